@@ -1,0 +1,227 @@
+"""What each kind of component must do. Implement the methods; no base class is needed.
+
+Every component class may carry a nested pydantic model ``Config``; its fields are the component's parameters on the
+command line, in TOML and in notebooks, and an instance of it is the constructor's only argument. A class without
+``Config`` takes no argument. Keep heavy imports inside methods, so that reading a ``Config`` stays cheap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.garments import Garment
+from polyfold.polygon import Template
+from polyfold.types import Action, Decision, FoldLine, Observation, Scene, SimState, Subgoal
+
+__all__ = [
+    "LLM",
+    "Agent",
+    "Conversation",
+    "GarmentKind",
+    "Goal",
+    "Grounding",
+    "Message",
+    "Metric",
+    "Planner",
+    "Policy",
+    "Reply",
+    "Segmenter",
+    "Simulator",
+]
+
+Message = Mapping[str, Any]
+"""A chat message: ``{"role": "system" | "user" | "assistant", "content": str}``."""
+
+
+@runtime_checkable
+class Simulator(Protocol):
+    """Cloth on a table under a camera, moved by one or two arms. Deterministic for a seed on one machine."""
+
+    def reset(self, garment: Garment, seed: int) -> Observation:
+        """Lay the garment flat in a pose drawn from ``seed`` and return the first picture."""
+
+    def observe(self) -> Observation:
+        """Take a picture."""
+
+    def execute(self, action: Action) -> Observation:
+        """Do one fold, let the cloth settle and take a picture.
+
+        A pick off the cloth grasps nothing. Raises ActionError for pixels outside the image and SimulationError if the
+        cloth diverges; the state before the fold is kept in both cases.
+        """
+
+    def state(self) -> SimState:
+        """Privileged state, for metrics, oracle and rewards only."""
+
+    def restore(self, state: SimState) -> None:
+        """Return to a state of this garment, so that several picks can be tried from one."""
+
+    def close(self) -> None:
+        """Release what is held; the simulator can't be used afterwards."""
+
+
+@runtime_checkable
+class Segmenter(Protocol):
+    """Finds the cloth in a picture."""
+
+    def segment(self, observation: Observation) -> NDArray[np.bool_]:
+        """Mask of the cloth, bool, shape (H, W). Raises GroundingError when there is none."""
+
+
+@runtime_checkable
+class Grounding(Protocol):
+    """Turns a picture into a scene: a pure function, so that an episode can resume."""
+
+    def ground(
+        self,
+        observation: Observation,
+        mask: NDArray[np.bool_],
+        template: Template,
+        previous: Scene | None = None,
+        fold_line: FoldLine | None = None,
+    ) -> Scene:
+        """Ground one picture.
+
+        Args:
+            observation: the picture.
+            mask: the segmented cloth, bool, shape (H, W).
+            template: the polygon template of the garment's kind.
+            previous: the scene before the last fold; None at the start.
+            fold_line: the fold executed since ``previous``; None if nothing was folded.
+
+        Raises:
+            GroundingError: if the picture can't be explained.
+        """
+
+
+@dataclass(frozen=True)
+class Reply:
+    """A language model's answer to one request.
+
+    Attributes:
+        text: the visible answer.
+        reasoning: hidden reasoning, if the provider returned any.
+        finish: why it stopped: ``stop``, ``length``, ``refusal``.
+        refusal: the reason, when the model refuses; final.
+        usage: token counts by name; empty when unknown.
+        cost: US dollars; None when unknown, never 0 for unknown.
+        latency_s: duration of the successful call [s].
+        attempts: transport tries it took.
+        model_served: what answered.
+    """
+
+    text: str
+    reasoning: str | None = None
+    finish: str = "stop"
+    refusal: str | None = None
+    usage: Mapping[str, int] = field(default_factory=dict)
+    cost: float | None = None
+    latency_s: float = 0.0
+    attempts: int = 1
+    model_served: str = ""
+
+
+@runtime_checkable
+class LLM(Protocol):
+    """A chat model, real or rule-based. It sees only the messages."""
+
+    def complete(self, messages: Sequence[Message], params: Mapping[str, Any]) -> Reply:
+        """Answer a conversation. Raises LLMError when no answer can be had."""
+
+
+@runtime_checkable
+class Conversation(Protocol):
+    """The language model as the episode hands it to a planner: every exchange lands in the transcript."""
+
+    def ask(self, role: str, messages: Sequence[Message], params: Mapping[str, Any] | None = None) -> Reply:
+        """Ask in a role (``subgoals``, ``fold_line``, ...) and record messages and reply."""
+
+
+@runtime_checkable
+class Planner(Protocol):
+    """Splits an instruction into subgoals and turns each into a fold line (or, for direct planners, an action)."""
+
+    def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
+        """Decompose an instruction. Raises RefusedError with the reason when it can't or must not be done."""
+
+    def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine | Action:
+        """Plan one step on the scene as seen now. Raises PlanError when no valid answer came after the repairs."""
+
+
+@runtime_checkable
+class Policy(Protocol):
+    """Chooses picks and places for a fold line."""
+
+    def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
+        """Picks on the contour left of the line, places mirrored. Raises PlanError if no cloth lies left of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Goal:
+    """What the loop hands an agent at the start: only what the agent ``requires``; the rest is None.
+
+    Attributes:
+        instruction: the sentence.
+        kind: garment kind.
+        template: polygon template of the kind.
+        seed: for the agent's own randomness.
+        conversation: the episode's language model.
+        subgoal_texts, subgoal_images, goal_image: accurate guidance, for agents that need it.
+        state, simulator: privileged access, for agents that need it.
+    """
+
+    instruction: str | None
+    kind: str
+    template: Template
+    seed: int
+    conversation: Conversation | None = None
+    subgoal_texts: Sequence[str] | None = None
+    subgoal_images: Sequence[NDArray[np.uint8]] | None = None
+    goal_image: NDArray[np.uint8] | None = None
+    state: Any = None
+    simulator: Any = None
+
+
+@runtime_checkable
+class Agent(Protocol):
+    """Maps instruction and pictures to actions; ``polyfold`` composes grounding, planner, policy and LLM.
+
+    ``requires`` is a subset of {"instruction", "subgoal_texts", "subgoal_images", "goal_image", "state", "simulator"};
+    the last two are privileged and marked so wherever results are shown.
+    """
+
+    requires: ClassVar[frozenset[str]]
+
+    def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
+        """Start an episode; return the subgoals, or an empty sequence if the agent has none."""
+
+    def decide(self, observation: Observation) -> Decision | None:
+        """The next action, or None when done."""
+
+
+@runtime_checkable
+class GarmentKind(Protocol):
+    """A kind of garment: its polygon template and a generator of seeded instances."""
+
+    kind: ClassVar[str]
+
+    def template(self) -> Template:
+        """The polygon template."""
+
+    def generate(self, seed: int, edge_length: float = 0.0125) -> Garment:
+        """The seeded garment, meshed at about ``edge_length`` [m]. The same seed gives the same garment."""
+
+
+@runtime_checkable
+class Metric(Protocol):
+    """Scores an episode's end against a reference."""
+
+    unit: ClassVar[str]
+
+    def score(self, final: SimState, reference: SimState) -> float:
+        """The value, in ``unit``."""
