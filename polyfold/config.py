@@ -1,0 +1,102 @@
+"""One model of an experiment: which components, with which parameters; TOML in and out."""
+
+from __future__ import annotations
+
+import tomllib
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from polyfold.errors import ConfigError
+
+__all__ = ["Choice", "Experiment", "load", "to_toml"]
+
+
+class Choice(BaseModel):
+    """A component by name, with parameters. In TOML ``policy = "caso"`` or a table ``[policy]`` with ``name``."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str
+    params: dict[str, Any] = Field(default_factory=dict)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_short_form(cls, value: Any) -> Any:
+        if isinstance(value, str):
+            return {"name": value}
+        if isinstance(value, dict) and "params" not in value:
+            return {"name": value.get("name"), "params": {key: v for key, v in value.items() if key != "name"}}
+        return value
+
+
+class Experiment(BaseModel):
+    """Which components an episode is made of. Every field has a default that needs no key and no GPU."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    agent: Choice = Choice(name="polyfold")
+    simulator: Choice = Choice(name="xpbd")
+    segmenter: Choice = Choice(name="colour")
+    grounding: Choice = Choice(name="polygon")
+    planner: Choice = Choice(name="hierarchical")
+    policy: Choice = Choice(name="caso")
+    llm: Choice = Choice(name="rules")
+
+    @classmethod
+    def of(cls, **settings: Any) -> Experiment:
+        """Build from keyword settings.
+
+        Raises:
+            ConfigError: naming the setting that is unknown or wrong.
+        """
+        return _validated(settings, "the experiment")
+
+    def override(self, settings: dict[str, str | dict[str, Any] | Choice]) -> Experiment:
+        """A copy with some components replaced."""
+        return Experiment.of(**{**self.model_dump(), **settings})
+
+    def create(self, kind: str, field: str) -> Any:
+        """Construct the component chosen in ``field``, of the plural ``kind``."""
+        from polyfold import plugins
+
+        choice: Choice = getattr(self, field)
+        return plugins.create(kind, choice.name, choice.params)
+
+
+def load(path: str | Path) -> Experiment:
+    """Read an experiment from a TOML file. Raises ConfigError with the file and the wrong line or setting."""
+    path = Path(path)
+    try:
+        settings = tomllib.loads(path.read_text("utf-8"))
+    except FileNotFoundError as error:
+        raise ConfigError(f"there is no file {path}; check the path") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path} is not valid TOML: {error}; correct it") from error
+    return _validated(settings, str(path))
+
+
+def _validated(settings: dict[str, Any], source: str) -> Experiment:
+    for name in settings:
+        if name not in Experiment.model_fields:
+            close = get_close_matches(name, Experiment.model_fields, n=1)
+            hint = f"did you mean {close[0]!r}?" if close else f"the settings are {', '.join(Experiment.model_fields)}"
+            raise ConfigError(f"{source} has no setting {name!r}; {hint}")
+    try:
+        return Experiment(**settings)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise ConfigError(f"{source} has a bad value for {where!r}: {first['msg']}; change it") from error
+
+
+def to_toml(experiment: Experiment) -> str:
+    """The experiment as TOML that :func:`load` reads back to an equal experiment."""
+    import tomli_w
+
+    tables: dict[str, Any] = {}
+    for name, choice in experiment.model_dump().items():
+        tables[name] = {"name": choice["name"], **choice["params"]} if choice["params"] else choice["name"]
+    return tomli_w.dumps(tables)
