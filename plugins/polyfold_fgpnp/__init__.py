@@ -1,0 +1,1 @@
+"""Fold-line-guided pick-and-place policies."""

@@ -1,0 +1,1 @@
+"""Groundings: from a picture to what a planner reasons about."""

@@ -1,0 +1,1 @@
+"""Planners: from a sentence to fold lines."""

@@ -1,0 +1,32 @@
+"""Registers the garments, the colour segmenter, the agents and the standard tasks."""
+
+from polyfold.hookspecs import hookimpl
+
+
+@hookimpl
+def register_garments(register):
+    """Register the kinds of garment."""
+    register("square", "polyfold_standard.square:Square", "square cloth, one layer")
+    register("rectangle", "polyfold_standard.rectangle:Rectangle", "rectangular cloth, one layer")
+    register("tshirt", "polyfold_standard.tshirt:TShirt", "t-shirt, two layers")
+    register("pants", "polyfold_standard.pants:Pants", "pants, two layers")
+
+
+@hookimpl
+def register_segmenters(register):
+    """Register the segmenter."""
+    register("colour", "polyfold_standard.segmenter:ColourThreshold", "colour distance from the table")
+
+
+@hookimpl
+def register_agents(register):
+    """Register the agents: the whole method, and the two floors every result is compared with."""
+    register("polyfold", "polyfold.agent:PolyFoldAgent", "segmenter, grounding, planner and policy")
+    register("noop", "polyfold_standard.floors:Noop", "does nothing")
+    register("random", "polyfold_standard.floors:Random", "random picks on the cloth, places mirrored across a random line")
+
+
+@hookimpl
+def register_tasks(register):
+    """Register the suite."""
+    register("polyfold70", "polyfold_standard:tasks/polyfold70.toml", "the 70 tasks of the paper's Table I")

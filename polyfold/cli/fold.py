@@ -1,0 +1,78 @@
+"""``polyfold fold``: the main job, from a sentence to a folded garment and its pictures."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from polyfold.cli.components import add_component_options, experiment_from
+from polyfold.cli.source import add_source_options, garment_from
+
+__all__ = ["configure", "run"]
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("instruction", help='what to do, for example "fold the t-shirt into a rectangular block"')
+    add_source_options(parser)
+    parser.add_argument("--task", help="judge against this standard task (polyfold70), for example tshirt-half-hem")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to leave episode.json and the pictures")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of the progress")
+    add_component_options(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Fold, show what happens as it happens, and save the result."""
+    from polyfold.folding import fold
+
+    experiment = experiment_from(arguments)
+    garment = garment_from(arguments, experiment)
+    episode = fold(
+        arguments.instruction,
+        garment,
+        seed=arguments.seed,
+        task=arguments.task,
+        out=arguments.out,
+        experiment=experiment,
+        observer=None if arguments.json else Printer(),
+    )
+    if arguments.json:
+        print(json.dumps(episode.summary()))
+    else:
+        _print_result(episode, arguments.out)
+    return 0
+
+
+class Printer:
+    """Prints an episode as it happens."""
+
+    def on_episode_start(self, start) -> None:  # noqa: ANN001, D102
+        print(f"{start.garment.name}: {start.instruction}")
+        for number, subgoal in enumerate(start.subgoals, 1):
+            print(f"  {number}. {subgoal.text}")
+        self._flush(f"  planned in {start.seconds:.2f} s")
+
+    def on_step(self, step) -> None:  # noqa: ANN001, D102
+        line = step.fold_line
+        where = (
+            f"line ({line.start[0]:.0f}, {line.start[1]:.0f}) -> ({line.end[0]:.0f}, {line.end[1]:.0f})" if line else ""
+        )
+        times = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
+        self._flush(f"  fold {step.index + 1}: {where}, {step.action.arms} arm(s); {times}")
+
+    def _flush(self, line: str) -> None:
+        print(line)
+        sys.stdout.flush()
+
+
+def _print_result(episode, out: Path | None) -> None:  # noqa: ANN001
+    fidelity = episode.fidelity
+    if fidelity is not None:
+        print(
+            f"  result: IoU {fidelity.iou:.3f} with the ideal, moved part off by {fidelity.moved_part_error_mm:.1f} mm "
+            f"({fidelity.reference})"
+        )
+    if out is not None:
+        print(f"  pictures: {out / 'filmstrip.png'}, {out / 'fold.gif'}")
