@@ -1,0 +1,32 @@
+"""The garment kind ``rectangle``."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from polyfold.garments import Garment
+from polyfold.polygon import Template
+from polyfold_standard.cloth import cloth_garment, cloth_outline
+from polyfold_standard.templates.rectangle import rectangle_template
+
+__all__ = ["Rectangle"]
+
+
+class Rectangle:
+    """Rectangular cloths, such as towels, of 0.25 to 0.45 m; half of them lie upright, half across."""
+
+    kind: ClassVar[str] = "rectangle"
+
+    def template(self) -> Template:
+        """The polygon template."""
+        return rectangle_template()
+
+    def generate(self, seed: int, edge_length: float = 0.0125) -> Garment:
+        """The seeded rectangle, meshed at about ``edge_length`` [m]."""
+        rng = np.random.default_rng([seed, 2])
+        long = rng.uniform(0.25, 0.45)
+        short = long * rng.uniform(0.5, 0.9)
+        width, height = (short, long) if rng.uniform() < 0.5 else (long, short)
+        return cloth_garment(self.kind, seed, cloth_outline(width, height, rng), edge_length, rng)
