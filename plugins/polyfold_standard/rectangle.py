@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from polyfold.garments import Garment
-from polyfold.polygon import Template
 from polyfold_standard.cloth import cloth_garment, cloth_outline
-from polyfold_standard.templates.rectangle import rectangle_template
+
+if TYPE_CHECKING:
+    from polyfold.polygon import Template
 
 __all__ = ["Rectangle"]
 
@@ -21,6 +22,8 @@ class Rectangle:
 
     def template(self) -> Template:
         """The polygon template."""
+        from polyfold_standard.templates.rectangle import rectangle_template
+
         return rectangle_template()
 
     def generate(self, seed: int, edge_length: float = 0.0125) -> Garment:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.garments import Garment, Outline, curved_outline, mesh_panels
-from polyfold.polygon import Template
 from polyfold_standard.colours import fabric_colours
-from polyfold_standard.templates.tshirt import tshirt_template
+
+if TYPE_CHECKING:
+    from polyfold.polygon import Template
 
 __all__ = ["TShirt"]
 
@@ -30,6 +31,8 @@ class TShirt:
 
     def template(self) -> Template:
         """The polygon template."""
+        from polyfold_standard.templates.tshirt import tshirt_template
+
         return tshirt_template()
 
     def generate(self, seed: int, edge_length: float = 0.0125) -> Garment:
