@@ -1,0 +1,39 @@
+import pytest
+
+from polyfold import config
+from polyfold.errors import ConfigError
+
+
+def test_toml_round_trip(tmp_path):
+    experiment = config.Experiment.of(policy="farthest", simulator={"name": "xpbd", "edge_length": 0.02})
+    path = tmp_path / "experiment.toml"
+    path.write_text(config.to_toml(experiment))
+    assert config.load(path) == experiment
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('polcy = "caso"', "did you mean 'policy'"),
+        ("policy = 3", "policy"),
+        ("policy = [", "not valid TOML"),
+        ("[policy]\ngamma = 1.0", "policy"),
+    ],
+)
+def test_wrong_files_say_what_is_wrong(tmp_path, text, says):
+    path = tmp_path / "wrong.toml"
+    path.write_text(text)
+    with pytest.raises(ConfigError, match=says):
+        config.load(path)
+
+
+def test_missing_file():
+    with pytest.raises(ConfigError, match="there is no file"):
+        config.load("nowhere.toml")
+
+
+def test_override_leaves_the_original_alone():
+    experiment = config.Experiment()
+    changed = experiment.override({"policy": "farthest"})
+    assert (experiment.policy.name, changed.policy.name) == ("caso", "farthest")
+    assert changed.override({"policy": "caso"}) == experiment

@@ -1,0 +1,41 @@
+"""What is loaded, and when: a light import and a light help, heavy packages only with the component that needs them."""
+
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = ("torch", "numba", "pybullet", "litellm", "cv2", "matplotlib", "scipy", "shapely", "jupyterlab", "trimesh")
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import polyfold",
+        "import polyfold; polyfold.Experiment; polyfold.FoldLine; polyfold.hookimpl",
+        "from polyfold.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass",
+        "from polyfold.cli import main; main(['plugins'])",
+    ],
+)
+def test_light_paths_load_nothing_heavy(code):
+    check = f"{code}\nimport sys\nloaded = [m for m in {HEAVY} if m in sys.modules]\nassert not loaded, loaded"
+    result = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, timeout=60, check=False)
+    assert result.returncode == 0, result.stderr
+
+
+def test_reading_parameters_of_components_loads_nothing_heavy():
+    code = (
+        "from polyfold import plugins\n"
+        "for kind in ('simulators', 'segmenters', 'groundings', 'planners', 'policies', 'llms', 'agents', 'garments'):\n"
+        "    for name in plugins.names(kind):\n"
+        "        getattr(plugins.component_class(kind, name), 'Config', None)\n"
+    )
+    test_light_paths_load_nothing_heavy(code)
+
+
+def test_public_names_resolve():
+    import polyfold
+
+    assert len(polyfold.__all__) <= 30
+    for name in polyfold.__all__:
+        assert getattr(polyfold, name) is not None
