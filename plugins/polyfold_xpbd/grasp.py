@@ -1,0 +1,112 @@
+"""What the grippers take hold of and how they move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.types import Action, Camera
+
+__all__ = ["Grasp", "Motion", "plan_motion", "take_hold"]
+
+Floats = NDArray[np.float32]
+
+REACH = 0.015
+"""A gripper holds the cloth, all layers of it, within this distance of the pick [m]."""
+LIFT_RATIO, HIGHEST = 0.45, 0.30
+"""Height of the path as a share of the distance from pick to place, and its upper limit [m]."""
+SPEED, RAMP, HOLD = 0.5, 0.15, 0.05
+"""Speed of the gripper [m/s], time to reach it and to stop [s], and pause before it opens [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Grasp:
+    """The held particles of all arms.
+
+    Attributes:
+        particles: indices, uint32, shape (G,).
+        arms: which arm holds each, uint32, shape (G,).
+        offsets: position relative to the arm's pick point [m], float32, shape (G, 3).
+        starts, ends: pick and place points of every arm [m], shape (arms, 3).
+    """
+
+    particles: NDArray[np.uint32]
+    arms: NDArray[np.uint32]
+    offsets: Floats
+    starts: NDArray[np.float64]
+    ends: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A sampled gripper path.
+
+    Attributes:
+        path: position of every arm at each substep [m], float32, shape (S, arms, 3).
+        angles: how far the held patch has turned [rad], float32, shape (S,).
+        directions: horizontal unit vector from pick to place per arm, float32, shape (arms, 2).
+    """
+
+    path: Floats
+    angles: Floats
+    directions: Floats
+
+
+def take_hold(action: Action, positions: NDArray[np.float64], camera: Camera, thickness: float) -> Grasp | None:
+    """The particles under each pick, all layers; None if every pick is off the cloth."""
+    distances = np.empty((action.arms, len(positions)))
+    for arm, pick in enumerate(action.picks):
+        ray = camera.to_world(pick, positions[:, 2])
+        distances[arm] = np.hypot(*(positions - ray)[:, :2].T)
+    nearest = distances.argmin(axis=0)
+    held = distances.min(axis=0) <= REACH
+    particles = np.flatnonzero(held)
+    if len(particles) == 0:
+        return None
+    arms = nearest[particles]
+    starts, ends = np.zeros((action.arms, 3)), np.zeros((action.arms, 3))
+    for arm in range(action.arms):
+        mine = positions[particles[arms == arm]]
+        level = float(mine[:, 2].mean()) if len(mine) else 0.0
+        above = float(mine[:, 2].max()) - level if len(mine) else 0.0
+        starts[arm] = camera.to_world(action.picks[arm], level)
+        target = camera.to_world(action.places[arm], level)
+        under = ~held & (np.hypot(*(positions - target)[:, :2].T) <= REACH)
+        surface = float(positions[under, 2].max()) + thickness if under.any() else thickness / 2
+        ends[arm] = camera.to_world(action.places[arm], surface + above)
+    return Grasp(
+        particles.astype(np.uint32),
+        arms.astype(np.uint32),
+        (positions[particles] - starts[arms]).astype(np.float32),
+        starts,
+        ends,
+    )
+
+
+def plan_motion(grasp: Grasp, time_step: float) -> Motion:
+    """Half ellipses from pick to place, all arms arriving together, followed by a short hold."""
+    span = (grasp.ends - grasp.starts)[:, :2]
+    distance = np.hypot(*span.T)
+    height = np.minimum(LIFT_RATIO * distance, HIGHEST)
+    longest = float((np.pi * np.sqrt(((distance / 2) ** 2 + height**2) / 2)).max())
+    progress = _eased(longest, time_step)
+    angles = np.pi * progress
+    swing = (1.0 - np.cos(angles)) / 2
+    path = np.empty((len(progress), len(span), 3))
+    path[:, :, :2] = grasp.starts[:, :2] + swing[:, None, None] * span
+    rise = grasp.starts[:, 2] + progress[:, None] * (grasp.ends - grasp.starts)[:, 2]
+    path[:, :, 2] = rise + np.sin(angles)[:, None] * height
+    directions = span / np.maximum(distance, 1e-9)[:, None]
+    return Motion(path.astype(np.float32), angles.astype(np.float32), directions.astype(np.float32))
+
+
+def _eased(length: float, time_step: float) -> NDArray[np.float64]:
+    """Progress from 0 to 1 along a path of ``length`` [m] at full speed with soft ends, then the hold."""
+    duration = length / SPEED + RAMP
+    times = np.arange(1, max(2, round(duration / time_step)) + 1) * time_step
+    ramp = np.clip(np.minimum(times, duration - times) / RAMP, 0.0, 1.0)
+    travelled = np.cumsum(ramp * ramp * (3.0 - 2.0 * ramp))
+    hold = np.ones(max(1, round(HOLD / time_step)))
+    return np.concatenate([travelled / travelled[-1], hold])

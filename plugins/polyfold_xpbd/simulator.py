@@ -1,0 +1,152 @@
+"""The simulator that agents fold in: garment in, pictures out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from polyfold.errors import SimulationError
+from polyfold.garments import Garment
+from polyfold.types import Action, Camera, Observation, SimState
+
+if TYPE_CHECKING:
+    from polyfold_xpbd.solver import Solver
+
+__all__ = ["XpbdSimulator"]
+
+
+class XpbdSimulator:
+    """Cloth on a table under a camera. Implements :class:`polyfold.interfaces.Simulator`.
+
+    The garment is laid with its bounding circle in the middle of the image, turned by an angle drawn from the seed.
+    Grippers hold all layers within 15 mm of a pick and lay them down at the place along half an ellipse. A pick off
+    the cloth grasps nothing: its arm moves empty, and if no arm holds cloth the fold changes nothing.
+    """
+
+    class Config(BaseModel):
+        """Parameters of the simulation."""
+
+        model_config = ConfigDict(extra="forbid", frozen=True)
+
+        rotation_deg: float = Field(20.0, ge=0.0, le=180.0, description="the pose is turned by up to this angle [deg]")
+        fill: float = Field(0.8, gt=0.1, le=1.0, description="share of the image that the garment's circle fills")
+        thickness: float = Field(0.005, gt=0.001, le=0.02, description="distance of touching layers [m]")
+        bending_length: float = Field(0.013, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]")
+        table_friction: float = Field(0.8, ge=0.0, le=2.0, description="Coulomb friction, cloth on table")
+        cloth_friction: float = Field(0.4, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
+
+    def __init__(self, config: Config | None = None) -> None:
+        self.config = config or self.Config()
+        self._solver: Solver | None = None
+        self._garment: Garment | None = None
+        self._recorder: tuple[Callable[[Observation], None], float] | None = None
+
+    def reset(self, garment: Garment, seed: int) -> Observation:
+        """Lay the garment flat in a pose drawn from ``seed`` and return the first picture."""
+        from polyfold_xpbd.solver import Solver
+
+        angle = np.deg2rad(np.random.default_rng(seed).uniform(-1.0, 1.0) * self.config.rotation_deg)
+        flat = np.asarray(garment.mesh.vertices, float)[:, :2]
+        centre = (flat.min(axis=0) + flat.max(axis=0)) / 2
+        radius = float(np.hypot(*(flat - centre).T).max())
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        self._garment, self._seed, self._actions = garment, seed, []
+        self._camera = Camera.framing(2 * radius / self.config.fill)
+        self._solver = Solver(garment.mesh, (flat - centre) @ turn, self.config)
+        self._solver.settle(0.3)
+        self._keypoints = _named_as_seen(garment, self._solver.positions())
+        self._two_layers = garment.mesh.layers == 2
+        self._outside_up = (garment.mesh.panel == 1) | (not self._two_layers)
+        return self.observe()
+
+    def observe(self) -> Observation:
+        """Take a picture."""
+        from polyfold_xpbd.camera import take_picture
+
+        solver, garment = self._ready()
+        return take_picture(
+            self._camera, solver.x, solver.surface_normals(), solver.triangles, self._outside_up, garment.colours
+        )
+
+    def execute(self, action: Action) -> Observation:
+        """Do one fold, let the cloth settle and take a picture.
+
+        Raises:
+            ActionError: for pixels outside the image.
+            SimulationError: if the cloth diverges; the state before the fold is restored first.
+        """
+        solver, garment = self._ready()
+        action.check_inside(self._camera)
+        before = self.state()
+        self._actions.append(np.concatenate([action.picks, action.places]).round(3).tolist())
+        if not solver.fold(action, self._camera, *self._frames()):
+            reproduction = (
+                f"garment {garment.name!r} (seed {garment.seed}), reset seed {self._seed}, {self.config!r}, "
+                f"picks and places so far {self._actions}"
+            )
+            self.restore(before)
+            raise SimulationError(
+                f"the cloth diverged and the state before this fold was restored; reproduce with {reproduction}. "
+                "Go on with another action, or report it"
+            )
+        return self.observe()
+
+    def wait(self, seconds: float) -> Observation:
+        """Let simulated time pass without touching the cloth and take a picture."""
+        solver, _ = self._ready()
+        if not solver.wait(seconds, *self._frames()):
+            raise SimulationError("the cloth diverged while waiting; call reset() and report the episode")
+        return self.observe()
+
+    def record(self, recorder: Callable[[Observation], None] | None, frames_per_second: float = 15.0) -> None:
+        """Hand every frame of the coming motion to ``recorder``, by simulated time; None stops recording."""
+        self._recorder = None if recorder is None else (recorder, frames_per_second)
+
+    def state(self) -> SimState:
+        """Privileged state: particles, keypoints and the contact memory that :meth:`restore` needs."""
+        solver, _ = self._ready()
+        extra: dict[str, Any] = {**solver.contact_memory(), "actions": tuple(self._actions)}
+        return SimState(solver.positions(), solver.velocities(), self._keypoints, self._camera, extra)
+
+    def restore(self, state: SimState) -> None:
+        """Return to a state of this garment, so that several picks can be tried from one."""
+        solver, garment = self._ready()
+        if len(state.positions) != len(garment.mesh.vertices):
+            raise SimulationError(
+                f"the state has {len(state.positions)} particles, the garment {len(garment.mesh.vertices)}; "
+                "restore only states of the garment given to reset()"
+            )
+        solver.set_state(state.positions, state.velocities, state.extra)
+        self._camera, self._keypoints = state.camera, state.keypoints
+        self._actions = list(state.extra.get("actions", ()))
+
+    def close(self) -> None:
+        """Release the solver; call :meth:`reset` to go on."""
+        self._solver = self._garment = None
+
+    def _ready(self) -> tuple[Solver, Garment]:
+        if self._solver is None or self._garment is None:
+            raise SimulationError("there is no cloth on the table; call reset(garment, seed) first")
+        return self._solver, self._garment
+
+    def _frames(self) -> tuple[Callable[[], None] | None, float]:
+        if self._recorder is None:
+            return None, 0.0
+        recorder, rate = self._recorder
+        return lambda: recorder(self.observe()), 1.0 / rate
+
+
+def _named_as_seen(garment: Garment, positions: NDArray[np.float64]) -> Mapping[str, int]:
+    """Keypoint names; those of a ``cyclic`` garment shift so that the edge nearest the image's top is the top."""
+    names = garment.cyclic
+    if not names:
+        return dict(garment.keypoints)
+    indices = [garment.keypoints[name] for name in names]
+    y = positions[indices, 1]
+    highest = int(np.argmax(y + np.roll(y, -1)))
+    shift = highest - 1
+    return {name: indices[(k + shift) % len(names)] for k, name in enumerate(names)}
