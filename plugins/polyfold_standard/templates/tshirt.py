@@ -1,0 +1,173 @@
+"""The t-shirt's template."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from polyfold.polygon import (
+    Penalty,
+    SymmetricGenerator,
+    Template,
+    angle_range,
+    offset_range,
+    position_range,
+    ratio_range,
+)
+
+__all__ = ["tshirt_template"]
+
+NAMES = (
+    "hem_left",
+    "armpit_left",
+    "sleeve_bottom_left",
+    "sleeve_top_left",
+    "shoulder_left",
+    "neck_left",
+    "neck_center",
+    "neck_right",
+    "shoulder_right",
+    "sleeve_top_right",
+    "sleeve_bottom_right",
+    "armpit_right",
+    "hem_right",
+)
+
+SIDES = ("left", "right")
+
+HEM = ("hem_left", "hem_right")
+SHOULDERS = ("shoulder_left", "shoulder_right")
+SPINE = (HEM, SHOULDERS)
+NECK = ("neck_left", "neck_right")
+
+
+@cache
+def tshirt_template() -> Template:
+    """A t-shirt, front and back, with sleeves from short to elbow-long."""
+    return Template(
+        kind="tshirt",
+        names=NAMES,
+        descriptions=_descriptions(),
+        parts=_parts(),
+        canonical_shapes=[
+            _shape(shoulder=0.25, length=0.72, sleeve=(0.22, 0.13), cuff=(-0.05, 0.15)),
+            _shape(shoulder=0.25, length=0.72, sleeve=(0.16, 0.18), cuff=(-0.09, 0.10)),
+            _shape(shoulder=0.19, length=0.72, sleeve=(0.16, 0.10), cuff=(-0.06, 0.13)),
+        ],
+        generator=SymmetricGenerator(NAMES, [(n, n.replace("_left", "_right")) for n in NAMES if n.endswith("_left")]),
+        penalties=[*_body(), *_collar(), *_sleeve("left", 1.0), *_sleeve("right", -1.0), *_likeness()],
+    )
+
+
+def _shape(
+    shoulder: float, length: float, sleeve: tuple[float, float], cuff: tuple[float, float]
+) -> list[tuple[float, float]]:
+    """An upright outline: half shoulder width, length, the sleeve's and the cuff's run (outward, down)."""
+    chest, top = 1.1 * shoulder, 0.04
+    end = (shoulder + sleeve[0], top + sleeve[1])
+    right = {
+        "neck": (0.4 * shoulder, 0.0),
+        "shoulder": (shoulder, top),
+        "sleeve_top": end,
+        "sleeve_bottom": (end[0] + cuff[0], end[1] + cuff[1]),
+        "armpit": (chest, top + 0.8 * shoulder),
+        "hem": (chest, length),
+    }
+    corners = {"neck_center": (0.0, 0.08)}
+    for name, (x, y) in right.items():
+        corners |= {f"{name}_right": (x, y), f"{name}_left": (-x, y)}
+    return [corners[name] for name in NAMES]
+
+
+def _descriptions() -> dict[str, str]:
+    words = {
+        "hem": "{side} corner of the hem",
+        "armpit": "{side} armpit",
+        "sleeve_bottom": "lower end of the {side} sleeve's cuff",
+        "sleeve_top": "upper end of the {side} sleeve's cuff",
+        "shoulder": "{side} shoulder, where the sleeve begins",
+        "neck": "{side} end of the collar",
+    }
+    named = {f"{name}_{side}": text.format(side=side) for name, text in words.items() for side in SIDES}
+    return {**named, "neck_center": "middle of the collar, its lowest point"}
+
+
+def _parts() -> dict[str, tuple[str, ...]]:
+    parts: dict[str, tuple[str, ...]] = {}
+    for side in SIDES:
+        ends = (f"sleeve_bottom_{side}", f"sleeve_top_{side}")
+        parts |= {
+            f"{side} sleeve": (f"armpit_{side}", *ends, f"shoulder_{side}"),
+            f"{side} cuff": ends,
+            f"{side} armpit": (f"armpit_{side}",),
+            f"{side} shoulder": (f"shoulder_{side}",),
+            f"{side} side": (f"hem_{side}", f"armpit_{side}", *ends, f"shoulder_{side}", f"neck_{side}"),
+            f"{side} hem corner": (f"hem_{side}",),
+        }
+    return {
+        **parts,
+        "hem": HEM,
+        "collar": ("neck_left", "neck_center", "neck_right"),
+        "shoulders": SHOULDERS,
+        "body": ("hem_left", "armpit_left", "shoulder_left", "shoulder_right", "armpit_right", "hem_right"),
+    }
+
+
+def _body() -> list[Penalty]:
+    found = [
+        angle_range(HEM, SPINE, 70, 110, 5),
+        angle_range(SHOULDERS, SPINE, 70, 110, 5),
+        ratio_range(SPINE, SHOULDERS, 0.75, 2.2, 0.1),
+        ratio_range(SHOULDERS, HEM, 0.65, 1.35, 0.05),
+    ]
+    for side in SIDES:
+        seam, armhole = (f"hem_{side}", f"armpit_{side}"), (f"armpit_{side}", f"shoulder_{side}")
+        found += [
+            angle_range(seam, SPINE, -20, 20, 4),
+            # 25 degrees leave room for fits whose armpit slips along the sleeve.
+            angle_range(armhole, SPINE, -12, 12, 4),
+            ratio_range(armhole, SHOULDERS, 0.15, 0.65, 0.04),
+            position_range(f"armpit_{side}", SPINE, 0.45, 0.92, 0.04),
+        ]
+    return found
+
+
+def _collar() -> list[Penalty]:
+    return [
+        ratio_range(NECK, SHOULDERS, 0.22, 0.58, 0.04),
+        position_range("neck_left", SHOULDERS, 0.18, 0.42, 0.03),
+        position_range("neck_right", SHOULDERS, 0.58, 0.82, 0.03),
+        offset_range("neck_left", SHOULDERS, -0.22, 0.03, 0.03),
+        offset_range("neck_right", SHOULDERS, -0.22, 0.03, 0.03),
+        position_range("neck_center", NECK, 0.35, 0.65, 0.04),
+        offset_range("neck_center", NECK, 0.0, 0.6, 0.05),
+    ]
+
+
+def _sleeve(side: str, sign: float) -> list[Penalty]:
+    """``sign`` is 1 on the left, where the sleeve turns anticlockwise from up and its cuff clockwise."""
+    armpit, bottom, top, shoulder = f"armpit_{side}", f"sleeve_bottom_{side}", f"sleeve_top_{side}", f"shoulder_{side}"
+    axis = ((armpit, shoulder), (bottom, top))
+    loop = [armpit, bottom, top, shoulder]
+    corners = [
+        angle_range((b, c), (a, b), *sorted((sign * 8, sign * 172)), 5)
+        for a, b, c in zip(loop[-1:] + loop[:-1], loop, loop[1:] + loop[:1], strict=True)
+    ]
+    return [
+        *corners,
+        angle_range((bottom, top), axis, *sorted((sign * 50, sign * 130)), 5),
+        angle_range(axis, SPINE, *sorted((-sign * 50, -sign * 160)), 5),
+        ratio_range(axis, SHOULDERS, 0.18, 1.3, 0.05),
+        ratio_range((bottom, top), (armpit, shoulder), 0.35, 1.3, 0.06),
+    ]
+
+
+def _likeness() -> list[Penalty]:
+    """How much the two sides may differ."""
+    pairs = [
+        ("armpit", "shoulder"),
+        ("sleeve_bottom", "sleeve_top"),
+        ("shoulder", "sleeve_top"),
+        ("hem", "armpit"),
+        ("shoulder", "neck"),
+    ]
+    return [ratio_range((f"{a}_left", f"{b}_left"), (f"{a}_right", f"{b}_right"), 0.67, 1.5, 0.08) for a, b in pairs]
