@@ -141,13 +141,15 @@ def contour_of(mask: NDArray[np.bool_]) -> Points:
 
 
 def fill_polygon(polygon: ArrayLike, height: int, width: int) -> NDArray[np.bool_]:
-    """Mask of a closed polygon [px], shape (height, width)."""
+    """Mask of the pixels whose centres lie in a closed polygon [px], shape (height, width)."""
     import cv2
 
-    shift = 4
-    mask = np.zeros((height, width), np.uint8)
-    cv2.fillPoly(mask, [np.round(np.asarray(polygon, float) * 2**shift).astype(np.int32)], 1, shift=shift)
-    return mask.astype(bool)
+    # OpenCV also fills pixels that the boundary only touches; on a finer canvas that is a tenth of a pixel.
+    scale, shift = 5, 4
+    fine = np.zeros((height * scale, width * scale), np.uint8)
+    corners = (np.asarray(polygon, float) + 0.5) * scale - 0.5
+    cv2.fillPoly(fine, [np.round(corners * 2**shift).astype(np.int32)], 1, shift=shift)
+    return fine[scale // 2 :: scale, scale // 2 :: scale].astype(bool)
 
 
 def span_on_mask(
