@@ -68,7 +68,8 @@ def test_contour_runs_along_the_true_edge(width, height, angle):
     inside = geometry.rotate(contour - 199.5, -angle)
     beyond = np.maximum(np.abs(inside[:, 0]) - width / 2, np.abs(inside[:, 1]) - height / 2)
     assert np.abs(beyond).max() < 1.5
-    assert abs(beyond.mean()) < 0.3
+    # A side along the pixel rows can lie anywhere between two rows of pixel centres.
+    assert abs(beyond.mean()) < 0.55
 
 
 def test_empty_mask_has_no_contour():
