@@ -1,0 +1,60 @@
+"""An episode in pictures: the filmstrip, and how it shows itself in Jupyter."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from html import escape
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from polyfold.episode import Episode, Step
+
+__all__ = ["episode_html", "filmstrip_of", "result_caption"]
+
+
+def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
+    """One panel per fold, then the result beside the ideal, uint8, shape (H, W, 3)."""
+    from polyfold import view
+
+    fidelity = episode.fidelity
+    return view.filmstrip(
+        [_frame(step) for step in episode.steps],
+        episode.final.rgb,
+        heading=f"{episode.garment.name}: {episode.instruction}",
+        result_caption=result_caption(episode),
+        ideal_outline=fidelity.outline if fidelity else None,
+    )
+
+
+def _frame(step: Step):  # noqa: ANN202 - view is imported late
+    from polyfold import view
+
+    title = step.subgoal.text if step.subgoal else f"fold {step.index + 1}"
+    caption = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
+    return view.Frame(step.observation.rgb, step.scene, step.fold_line, step.action, title, caption)
+
+
+def result_caption(episode: Episode) -> str:
+    """How the episode came out, in one line."""
+    if episode.failure is not None:
+        return f"{episode.failure.stage}: {episode.failure.reason}"
+    if episode.fidelity is None:
+        return "nothing was folded"
+    error = episode.fidelity.moved_part_error_mm
+    against = "ideal" if episode.fidelity.reference == "keypoints" else "ideal along the planned lines"
+    moved = "" if np.isnan(error) else f", moved part off by {error:.0f} mm"
+    return f"IoU {episode.fidelity.iou:.3f} with the {against}{moved}"
+
+
+def episode_html(episode: Episode) -> str:
+    """The filmstrip and the figures as self-contained HTML."""
+    from polyfold import view
+
+    picture = b64encode(view.png(filmstrip_of(episode))).decode()
+    return (
+        f'<figure style="margin:0"><img style="max-width:100%" src="data:image/png;base64,{picture}" '
+        f'alt="{escape(episode.instruction)}"><figcaption>{escape(result_caption(episode))}</figcaption></figure>'
+    )
