@@ -26,7 +26,7 @@ def add_component_options(parser: argparse.ArgumentParser) -> None:
         metavar="KIND.PARAM=VALUE",
         action="append",
         default=[],
-        help="one parameter, for example --set simulator.edge_length=0.02; may be repeated",
+        help="one parameter, for example --set simulator.cloth_friction=0.6; may be repeated",
     )
 
 
@@ -48,7 +48,7 @@ def _parse(assignment: str) -> tuple[str, str, Any]:
     if not (equals and dot and field in FIELDS):
         raise ConfigError(
             f"--set {assignment!r} does not read KIND.PARAM=VALUE with KIND one of {', '.join(FIELDS)}; "
-            "for example --set simulator.edge_length=0.02"
+            "for example --set simulator.cloth_friction=0.6"
         )
     try:
         return field, param, json.loads(text)

@@ -22,12 +22,12 @@ def run(arguments: argparse.Namespace) -> int:
 
     kinds = arguments.garment or plugins.names("garments")
     simulator = plugins.create("simulators", "xpbd")
-    pictures = []
+    pictures = {}
     for kind in kinds:
         generator = plugins.create("garments", kind)
         for seed in range(arguments.seed, arguments.seed + arguments.count):
             garment = generator.generate(seed)
-            pictures.append((simulator.reset(garment, seed).rgb, garment.name))
+            pictures[garment.name] = simulator.reset(garment, seed).rgb
     simulator.close()
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     view.garment_sheet(pictures, columns=arguments.count, path=arguments.out)

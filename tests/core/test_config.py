@@ -5,7 +5,7 @@ from polyfold.errors import ConfigError
 
 
 def test_toml_round_trip(tmp_path):
-    experiment = config.Experiment.of(policy="farthest", simulator={"name": "xpbd", "edge_length": 0.02})
+    experiment = config.Experiment.of(policy="farthest", simulator={"name": "xpbd", "thickness": 0.006})
     path = tmp_path / "experiment.toml"
     path.write_text(config.to_toml(experiment))
     assert config.load(path) == experiment

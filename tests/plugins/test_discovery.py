@@ -3,7 +3,7 @@ import re
 
 import pytest
 
-FOLD = ("fold", "fold the square in half", "--garment", "square", "--set", "simulator.edge_length=0.03")
+FOLD = ("fold", "fold the square in half", "--garment", "square", "--edge-length", "0.03")
 
 
 def listing(result):
@@ -93,9 +93,9 @@ def test_unknown_component_suggests_the_nearest(polyfold):
 
 
 def test_unknown_parameter_suggests_the_nearest(polyfold):
-    result = polyfold(*FOLD[:4], "--set", "simulator.edge_lenght=0.03")
+    result = polyfold(*FOLD, "--set", "simulator.thicknes=0.01")
     assert result.returncode == 1
-    assert "did you mean 'edge_length'" in result.stderr
+    assert "did you mean 'thickness'" in result.stderr
 
 
 def test_observer_error_is_recorded_and_the_run_goes_on(polyfold):
