@@ -1,0 +1,315 @@
+"""Folding tasks as data: a suite file names, for every task, its folds on the flat garment's keypoints.
+
+A suite is a TOML file::
+
+    schema_version = 1
+    name = "my-suite"
+
+    [points.square]                       # optional: names for points between keypoints
+    center = { bottom_left = 0.25, top_left = 0.25, top_right = 0.25, bottom_right = 0.25 }
+
+    [[task]]
+    id = "square-corner-top_left"
+    garment = "square"
+    type = "S-Corner"
+    steps = [{ pairs = [["top_left", "center"]] }]
+
+A step is one fold. ``pairs`` says which points come to lie on which: the fold line is the mirror line that does it
+best, and the first point of each pair is on the lifted side. ``crease`` gives two points of the line instead, and
+``lift`` a point on the lifted side. All points are those of the flat garment: a fold leaves the rest where it is.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+from polyfold.errors import ConfigError
+from polyfold.types import FoldLine
+
+__all__ = ["Fold", "Suite", "Task", "fold_lines", "load_suite", "mirror_line", "recognise"]
+
+
+def _as_weights(value: Any) -> Any:
+    return {value: 1.0} if isinstance(value, str) else value
+
+
+Point = Annotated[dict[str, float], BeforeValidator(_as_weights)]
+"""A point of the flat garment: keypoint name -> weight, weights summing to 1; in TOML a bare name will do."""
+
+
+class Fold(BaseModel):
+    """One fold: either ``pairs``, or ``crease`` and ``lift``."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    pairs: tuple[tuple[Point, Point], ...] | None = Field(None, min_length=1)
+    crease: tuple[Point, Point] | None = None
+    lift: Point | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Fold:
+        if (self.pairs is None) == (self.crease is None) or (self.crease is None) != (self.lift is None):
+            raise ValueError("a step has either 'pairs', or 'crease' with 'lift'; give exactly one of the two")
+        for point in self._points():
+            if not point or abs(sum(point.values()) - 1.0) > 0.01:
+                raise ValueError(f"the weights of a point must sum to 1, got {point}; correct them")
+        return self
+
+    def _points(self) -> list[dict[str, float]]:
+        if self.pairs is not None:
+            return [point for pair in self.pairs for point in pair]
+        return [*(self.crease or ()), self.lift or {}]
+
+
+class Task(BaseModel):
+    """A goal that can be judged: the folds that reach it on a garment of one kind.
+
+    Attributes:
+        id: unique name within its suite.
+        garment: garment kind.
+        type: the family it belongs to, such as ``S-Corner``.
+        steps: the folds, in order.
+        instructions: sentences that ask for it, all meaning the same.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    id: str = Field(pattern=r"^[a-z0-9_-]+$", max_length=80)
+    garment: str
+    type: str
+    steps: tuple[Fold, ...] = Field(min_length=1)
+    instructions: tuple[str, ...] = ()
+
+
+class Suite(BaseModel):
+    """A named list of tasks."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    schema_version: Literal[1]
+    name: str
+    description: str = ""
+    tasks: tuple[Task, ...] = Field(alias="task", min_length=1)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_named_points(cls, suite: Any) -> Any:
+        """Put the weights in place of the points that the suite itself names."""
+        if not isinstance(suite, dict) or not isinstance(suite.get("points", {}), dict):
+            return suite
+        points = suite.get("points", {})
+        suite = {key: value for key, value in suite.items() if key != "points"}
+        if isinstance(suite.get("task"), list):
+            suite["task"] = [_substituted(task, points) for task in suite["task"]]
+        return suite
+
+    @field_validator("tasks")
+    @classmethod
+    def _unique(cls, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
+        seen: set[str] = set()
+        for task in tasks:
+            if task.id in seen:
+                raise ValueError(f"the task id {task.id!r} is used twice; rename one")
+            seen.add(task.id)
+        return tasks
+
+    def task(self, task_id: str) -> Task:
+        """The task of this id. Raises ConfigError with the nearest ids when there is none."""
+        for task in self.tasks:
+            if task.id == task_id:
+                return task
+        near = get_close_matches(task_id, [task.id for task in self.tasks], n=3)
+        hint = f"did you mean {' or '.join(near)}?" if near else "see `polyfold tasks`"
+        raise ConfigError(f"the suite {self.name} has no task {task_id!r}; {hint}")
+
+    def for_garment(self, kind: str) -> tuple[Task, ...]:
+        """The tasks on garments of this kind."""
+        return tuple(task for task in self.tasks if task.garment == kind)
+
+
+def load_suite(source: str | Path) -> Suite:
+    """Read a suite from a path, or from ``"package:path/within/it.toml"`` as plugins register it.
+
+    Raises:
+        ConfigError: naming the file, the task and the field that is wrong.
+    """
+    where, text = _read(source)
+    try:
+        content = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{where} is not valid TOML: {error}; correct it") from error
+    try:
+        return Suite.model_validate(content)
+    except ValidationError as error:
+        raise ConfigError(f"{where}: {_first_problem(error, content)}") from error
+
+
+def fold_lines(task: Task, keypoints: Mapping[str, ArrayLike]) -> list[FoldLine]:
+    """The task's fold lines on a flat garment, one per step.
+
+    Args:
+        task: the task.
+        keypoints: keypoint name -> pixel of the flat garment, shape (2,).
+
+    Returns:
+        Directed lines [px] as long as the garment along them, the lifted part on their left.
+
+    Raises:
+        ConfigError: if the task needs a keypoint that is missing, or its points coincide on this garment.
+    """
+    everything = np.array([np.asarray(point, float) for point in keypoints.values()])
+    lines = []
+    for number, fold in enumerate(task.steps, 1):
+        try:
+            lines.append(_stretched(_line_of(fold, keypoints), everything))
+        except KeyError as error:
+            raise ConfigError(
+                f"task {task.id}, step {number} needs the keypoint {error}, which the garment does not have; "
+                f"it has {', '.join(keypoints)}"
+            ) from error
+        except ValueError as error:
+            raise ConfigError(f"task {task.id}, step {number}: {error}; choose other points") from error
+    return lines
+
+
+def mirror_line(sources: ArrayLike, targets: ArrayLike) -> FoldLine:
+    """The line whose reflection brings ``sources`` nearest to ``targets`` (least squares), sources on its left.
+
+    Args:
+        sources, targets: corresponding pixels, shape (N, 2).
+
+    Raises:
+        ValueError: if sources and targets coincide.
+    """
+    sources, targets = np.atleast_2d(np.asarray(sources, float)), np.atleast_2d(np.asarray(targets, float))
+    moved, total = sources - targets, sources + targets
+    spread = total - total.mean(0)
+    if np.hypot(*moved.T).max() < 1e-9:
+        raise ValueError("the points to move already lie on their targets")
+    _, vectors = np.linalg.eigh(spread.T @ spread - moved.T @ moved)
+    normal = vectors[:, 0]
+    normal = normal if (moved @ normal).sum() > 0 else -normal
+    return _line_from_normal(normal, total.mean(0) / 2)
+
+
+def recognise(
+    tasks: Iterable[Task],
+    keypoints: Mapping[str, ArrayLike],
+    planned: Iterable[FoldLine],
+    degrees: float = 10.0,
+    offset: float = 0.06,
+) -> str | None:
+    """The task that a plan carries out, or None when it is no task's.
+
+    Args:
+        tasks: candidates, of the garment's kind.
+        keypoints: keypoint name -> pixel of the flat garment, shape (2,).
+        planned: the plan's fold lines [px], in order.
+        degrees: how far the directions may differ; the same side must be lifted.
+        offset: how far a planned line may pass from the middle of the task's line, as a share of the garment's span.
+    """
+    planned = list(planned)
+    span = float(np.ptp(np.array([np.asarray(point, float) for point in keypoints.values()]), axis=0).max())
+    best: tuple[float, str] | None = None
+    for task in tasks:
+        if len(task.steps) != len(planned):
+            continue
+        differences = [
+            _difference(ideal, line, degrees, offset * span)
+            for ideal, line in zip(fold_lines(task, keypoints), planned, strict=True)
+        ]
+        worst = max(differences)
+        if worst <= 1.0 and (best is None or worst < best[0]):
+            best = worst, task.id
+    return best[1] if best else None
+
+
+def _difference(ideal: FoldLine, line: FoldLine, degrees: float, offset: float) -> float:
+    """How far a line is from the ideal one, in tolerances; at most 1 is a match."""
+    along_ideal, along = np.subtract(ideal.end, ideal.start), np.subtract(line.end, line.start)
+    cross = along_ideal[0] * along[1] - along_ideal[1] * along[0]
+    angle = abs(np.degrees(np.arctan2(cross, along_ideal @ along)))
+    middle = np.add(ideal.start, ideal.end) / 2
+    return max(float(angle) / degrees, abs(float(line.distance(middle))) / offset)
+
+
+def _line_of(fold: Fold, keypoints: Mapping[str, ArrayLike]) -> FoldLine:
+    if fold.pairs is not None:
+        sources = [_position(source, keypoints) for source, _ in fold.pairs]
+        targets = [_position(target, keypoints) for _, target in fold.pairs]
+        return mirror_line(sources, targets)
+    start, end = (_position(point, keypoints) for point in fold.crease or ())
+    line = FoldLine.between(start, end)
+    distance = float(line.distance(_position(fold.lift or {}, keypoints)))
+    if distance == 0.0:
+        raise ValueError("the point to lift lies on the crease")
+    return line if distance > 0 else line.reversed()
+
+
+def _position(point: Mapping[str, float], keypoints: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
+    return sum((weight * np.asarray(keypoints[name], float) for name, weight in point.items()), np.zeros(2))
+
+
+def _line_from_normal(normal: NDArray[np.float64], through: NDArray[np.float64]) -> FoldLine:
+    """The unit-length line through a point whose left side the normal points to (y down)."""
+    along = np.array([-normal[1], normal[0]])
+    return FoldLine.between(through - along / 2, through + along / 2)
+
+
+def _stretched(line: FoldLine, points: NDArray[np.float64]) -> FoldLine:
+    """The same line, reaching as far as the points do along it."""
+    start = np.asarray(line.start)
+    along = np.subtract(line.end, line.start) / line.length
+    reach = (points - start) @ along
+    return FoldLine.between(start + reach.min() * along, start + reach.max() * along)
+
+
+def _substituted(task: Any, points: Mapping[str, Any]) -> Any:
+    """A raw task with its garment's named points replaced by their weights."""
+    named = points.get(task.get("garment"), {}) if isinstance(task, dict) else {}
+
+    def replaced(value: Any) -> Any:
+        if isinstance(value, str):
+            return named.get(value, value)
+        return [replaced(item) for item in value] if isinstance(value, list) else value
+
+    if not named or not isinstance(task.get("steps"), list):
+        return task
+    steps = [
+        {key: replaced(value) for key, value in step.items()} if isinstance(step, dict) else step
+        for step in task["steps"]
+    ]
+    return {**task, "steps": steps}
+
+
+def _read(source: str | Path) -> tuple[str, str]:
+    """What to call the source in messages, and its text."""
+    try:
+        if isinstance(source, str) and ":" in source and not Path(source).exists():
+            package, _, path = source.partition(":")
+            return source, files(package).joinpath(path).read_text("utf-8")
+        return str(source), Path(source).read_text("utf-8")
+    except (FileNotFoundError, ModuleNotFoundError) as error:
+        raise ConfigError(f"there is no task suite {source}; check the path") from error
+
+
+def _first_problem(error: ValidationError, content: Mapping[str, Any]) -> str:
+    """The first validation problem as one sentence with the task and the field."""
+    problem = error.errors()[0]
+    place = list(problem["loc"])
+    message = problem["msg"].removeprefix("Value error, ")
+    if len(place) >= 2 and place[0] == "task" and isinstance(place[1], int):
+        task = content["task"][place[1]]
+        name = task.get("id", f"number {place[1] + 1}") if isinstance(task, dict) else f"number {place[1] + 1}"
+        field = ".".join(str(part) for part in place[2:]) or "the task itself"
+        return f"task {name}, field {field}: {message}; see polyfold.tasks for the format"
+    return f"field {'.'.join(str(part) for part in place)}: {message}; see polyfold.tasks for the format"
