@@ -1,0 +1,157 @@
+"""An episode as one strip of pictures: every step with its sentence, then the result."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from polyfold.types import Action, FoldLine, Scene
+from polyfold.view.canvas import Page, line_height, text_width, wrapped
+from polyfold.view.overlay import overlay
+from polyfold.view.saving import save
+from polyfold.view.style import ARMS, FAINT, FOLD_LINE, GOAL, INK, RULE, Colour
+
+__all__ = ["Frame", "filmstrip"]
+
+Image = NDArray[np.uint8]
+
+PANEL, GAP, MARGIN = 330, 26, 26
+HEADING, TITLE, CAPTION = 24, 17, 15
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One step of a filmstrip.
+
+    Attributes:
+        rgb: the picture that was seen, uint8, shape (H, W, 3).
+        scene: the scene it was grounded to, if any.
+        fold_line: the planned fold line, if any.
+        action: the picks and places, if any.
+        title: the step in words.
+        caption: what stands below, such as the time it took.
+    """
+
+    rgb: Image
+    scene: Scene | None = None
+    fold_line: FoldLine | None = None
+    action: Action | None = None
+    title: str = ""
+    caption: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class _Panel:
+    """A finished picture with the lines of text above and below it."""
+
+    picture: Image
+    title: list[str]
+    caption: list[str]
+
+
+def filmstrip(
+    frames: Sequence[Frame],
+    result_rgb: Image,
+    heading: str = "",
+    result_caption: str = "",
+    ideal_outline: ArrayLike | None = None,
+    path: str | Path | None = None,
+    *,
+    result_title: str = "Result",
+    columns: int = 5,
+) -> Image:
+    """Lay out an episode: one panel per step and a last one with the result, and write it if a path is given.
+
+    Args:
+        frames: the steps, in order; may be empty.
+        result_rgb: the last picture, uint8, shape (H, W, 3).
+        heading: the instruction.
+        result_caption: how it came out, such as ``IoU 0.953, 4.2 mm``.
+        ideal_outline: where the cloth should lie [px], shape (N, 2), dashed over the result.
+        path: PNG to write.
+        result_title: what stands over the last panel.
+        columns: most panels in a row.
+
+    Returns:
+        The page, uint8, shape (H', W', 3).
+    """
+    panels = [_step_panel(number, frame) for number, frame in enumerate(frames, start=1)]
+    panels.append(_result_panel(result_rgb, result_title, result_caption, ideal_outline))
+    rows = [panels[i : i + columns] for i in range(0, len(panels), columns)]
+    page = _lay_out(rows, heading, _legend(frames, ideal_outline is not None))
+    if path is not None:
+        save(page, path)
+    return page
+
+
+def _step_panel(number: int, frame: Frame) -> _Panel:
+    zoom = PANEL / max(frame.rgb.shape[:2])
+    picture = overlay(frame.rgb, frame.scene, frame.fold_line, frame.action, zoom=zoom)
+    title = wrapped(f"{number}. {frame.title}", TITLE, PANEL, bold=True)
+    return _Panel(picture, title, wrapped(frame.caption, CAPTION, PANEL, most=2))
+
+
+def _result_panel(rgb: Image, title: str, caption: str, ideal_outline: ArrayLike | None) -> _Panel:
+    picture = overlay(rgb, outline=ideal_outline, zoom=PANEL / max(rgb.shape[:2]))
+    return _Panel(picture, wrapped(title, TITLE, PANEL, bold=True), wrapped(caption, CAPTION, PANEL, most=2))
+
+
+def _lay_out(rows: list[list[_Panel]], heading: str, legend: list[tuple[str, str, Colour]]) -> Image:
+    width = 2 * MARGIN + max(len(row) for row in rows) * (PANEL + GAP) - GAP
+    heading_lines = wrapped(heading, HEADING, width - 2 * MARGIN, bold=True, most=3)
+    top = MARGIN + (len(heading_lines) * line_height(HEADING) + 14 if heading_lines else 0)
+    heights = [_row_height(row) for row in rows]
+    height = top + sum(heights) + (len(rows) - 1) * GAP + (line_height(CAPTION) + 12 if legend else 0) + MARGIN - 8
+    page = Page(width, height)
+    page.lines(heading_lines, MARGIN, MARGIN - 4, HEADING, INK, bold=True)
+    y = top
+    for row, row_height in zip(rows, heights, strict=True):
+        _lay_row(page, row, y)
+        y += row_height + GAP
+    if legend:
+        _lay_legend(page, legend, MARGIN, y - GAP + 12)
+    return page.image()
+
+
+def _row_height(row: list[_Panel]) -> int:
+    return _titles_height(row) + PANEL + 8 + max(len(panel.caption) for panel in row) * line_height(CAPTION)
+
+
+def _titles_height(row: list[_Panel]) -> int:
+    return max(len(panel.title) for panel in row) * line_height(TITLE) + 8
+
+
+def _lay_row(page: Page, row: list[_Panel], y: int) -> None:
+    below_titles = y + _titles_height(row)
+    for column, panel in enumerate(row):
+        x = MARGIN + column * (PANEL + GAP)
+        page.lines(panel.title, x, below_titles - 8 - len(panel.title) * line_height(TITLE), TITLE, INK, bold=True)
+        page.picture(panel.picture, x, below_titles, frame=RULE)
+        page.lines(panel.caption, x, below_titles + PANEL + 8, CAPTION, FAINT)
+        if column:
+            page.text("›", x - GAP / 2, below_titles + PANEL / 2, 30, FAINT, anchor="mm")
+
+
+def _legend(frames: Sequence[Frame], with_ideal: bool) -> list[tuple[str, str, Colour]]:
+    """Sign, meaning and colour of what is drawn somewhere in the strip."""
+    entries = []
+    if any(frame.fold_line is not None for frame in frames):
+        entries.append(("▲", "fold line, teeth on the lifted side", FOLD_LINE))
+    arms = max((frame.action.arms for frame in frames if frame.action is not None), default=0)
+    names = ("pick → place",) if arms == 1 else ("first arm, pick → place", "second arm")
+    entries += [("●", name, colour) for name, colour in zip(names[:arms], ARMS, strict=False)]
+    if with_ideal:
+        entries.append(("– –", "ideal outline", GOAL))
+    return entries
+
+
+def _lay_legend(page: Page, entries: list[tuple[str, str, Colour]], x: float, y: float) -> None:
+    for sign, meaning, colour in entries:
+        page.text(sign, x, y, CAPTION, colour, bold=True)
+        x += text_width(sign, CAPTION, bold=True) + 6
+        page.text(meaning, x, y, CAPTION, FAINT)
+        x += text_width(meaning, CAPTION) + 24

@@ -1,0 +1,91 @@
+"""One picture of the cloth with what was seen in it and what is to be done."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from polyfold.types import Action, FoldLine, Observation, Scene
+from polyfold.view.canvas import Canvas
+from polyfold.view.drawing import draw_action, draw_fold_line, draw_model, draw_outline
+from polyfold.view.style import MAP, PAPER, Colour
+
+__all__ = ["overlay", "value_map"]
+
+Image = NDArray[np.uint8]
+
+
+def overlay(
+    picture: Observation | Image,
+    scene: Scene | None = None,
+    fold_line: FoldLine | None = None,
+    action: Action | None = None,
+    *,
+    outline: ArrayLike | None = None,
+    zoom: float = 1.0,
+) -> Image:
+    """Draw polygon, fold line and picks and places over a picture.
+
+    The polygon is dark with its creases dashed, hidden vertices are hollow. The fold line is green with teeth on the
+    side that is lifted, which is tinted. Each arm's arrow runs from the pick (disc) to the place (tip).
+
+    Args:
+        picture: what the camera saw, or its colours, uint8, shape (H, W, 3).
+        scene: the grounded scene; its polygon is drawn if it has one.
+        fold_line: the planned fold line.
+        action: the picks and places.
+        outline: an outline to compare with, such as the ideal result [px], shape (N, 2); dashed red.
+        zoom: size of the result relative to the picture.
+
+    Returns:
+        The picture, uint8, shape (zoom H, zoom W, 3); pixels that nothing covers are unchanged at zoom 1.
+    """
+    canvas = Canvas(picture.rgb if isinstance(picture, Observation) else picture, zoom)
+    if scene is not None and scene.model is not None:
+        draw_model(canvas, scene.model)
+    if outline is not None:
+        draw_outline(canvas, outline)
+    if fold_line is not None:
+        draw_fold_line(canvas, fold_line, scene)
+    if action is not None:
+        draw_action(canvas, action)
+    return canvas.image()
+
+
+def value_map(
+    picture: Observation | Image,
+    points: ArrayLike,
+    values: ArrayLike,
+    fold_line: FoldLine | None = None,
+    action: Action | None = None,
+    *,
+    zoom: float = 1.0,
+) -> Image:
+    """Colour pixels by their value, such as the predicted outcome of picking there: dark blue low, yellow high.
+
+    Args:
+        picture: what the camera saw, or its colours.
+        points: where the values belong [px], shape (N, 2).
+        values: shape (N,); coloured between their smallest and largest.
+        fold_line, action: drawn as by :func:`overlay`.
+        zoom: size of the result relative to the picture.
+    """
+    points, values = np.asarray(points, float), np.asarray(values, float)
+    canvas = Canvas(picture.rgb if isinstance(picture, Observation) else picture, zoom)
+    for point in points:
+        canvas.disc(point, 4.2, PAPER)
+    for index in np.argsort(values):
+        canvas.disc(points[index], 3.2, _colour(values[index], values.min(), values.max()))
+    if fold_line is not None:
+        draw_fold_line(canvas, fold_line)
+    if action is not None:
+        draw_action(canvas, action)
+    return canvas.image()
+
+
+def _colour(value: float, low: float, high: float) -> Colour:
+    share = 0.5 if high <= low else (value - low) / (high - low)
+    stops = np.array(MAP, float)
+    at = share * (len(stops) - 1)
+    red, green, blue = (round(float(np.interp(at, np.arange(len(stops)), stops[:, c]))) for c in range(3))
+    return red, green, blue
