@@ -74,6 +74,7 @@ class Episode:
     Attributes:
         seconds: time per stage, summed over the steps, ``reset`` and ``subgoals`` included [s].
         fidelity: how close the result came to the ideal fold; None when nothing was folded.
+        ideal_lines: the fold lines of that ideal [px].
     """
 
     instruction: str
@@ -93,6 +94,7 @@ class Episode:
     error: PolyfoldError | None = None
     task: str | None = None
     fidelity: Fidelity | None = None
+    ideal_lines: tuple[FoldLine, ...] = ()
 
     def summary(self) -> dict[str, Any]:
         """The episode as plain data, as ``episode.json`` and ``polyfold fold --json`` have it."""

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold.geometry import contour_of
+from polyfold.ideal import fold_ideally
+
 if TYPE_CHECKING:
     from polyfold.episode import Episode, Step
 
@@ -19,14 +22,19 @@ def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
     """One panel per fold, then the result beside the ideal, uint8, shape (H, W, 3)."""
     from polyfold import view
 
-    fidelity = episode.fidelity
     return view.filmstrip(
         [_frame(step) for step in episode.steps],
         episode.final.rgb,
         heading=f"{episode.garment.name}: {episode.instruction}",
         result_caption=result_caption(episode),
-        ideal_outline=fidelity.outline if fidelity else None,
+        ideal_outline=_ideal_outline(episode),
     )
+
+
+def _ideal_outline(episode: Episode) -> NDArray[np.float64] | None:
+    if not episode.ideal_lines:
+        return None
+    return contour_of(fold_ideally(episode.initial_state, episode.garment.mesh, episode.ideal_lines).mask)
 
 
 def _frame(step: Step):  # noqa: ANN202 - view is imported late

@@ -1,0 +1,61 @@
+"""How well an episode went: against the ideal fold, along a known task's lines where the fold is one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from polyfold import plugins
+from polyfold.episode import Episode
+from polyfold.errors import ConfigError, GroundingError
+from polyfold.ideal import fidelity
+from polyfold.tasks import Task, fold_lines, load_suite, recognise
+from polyfold.types import FoldLine
+
+__all__ = ["find_task", "judge", "known_tasks"]
+
+
+def known_tasks(kind: str) -> list[Task]:
+    """The tasks of all installed suites for a kind of garment."""
+    suites = (load_suite(str(plugins.find("tasks", name).target)) for name in plugins.names("tasks"))
+    return [task for suite in suites for task in suite.for_garment(kind)]
+
+
+def find_task(task_id: str, kind: str) -> Task:
+    """A task by id. Raises ConfigError, naming what is known for the kind, if there is none."""
+    tasks = known_tasks(kind)
+    for task in tasks:
+        if task.id == task_id:
+            return task
+    known = ", ".join(task.id for task in tasks)
+    raise ConfigError(f"no task for a {kind} is called {task_id!r}; choose one of: {known or 'none is installed'}")
+
+
+def judge(episode: Episode, task_id: str | None = None) -> Episode:
+    """The episode with its fidelity.
+
+    The ideal lines come from the true keypoints if a task is named or the plan is recognised as one; otherwise they are
+    the planned lines, and the fidelity is labelled ``self-referenced``.
+    """
+    keypoints = episode.initial_state.keypoint_pixels()
+    planned = [step.fold_line for step in episode.steps if step.fold_line is not None]
+    if task_id is None and not episode.steps:
+        return episode
+    if task_id is None:
+        task_id = recognise(known_tasks(episode.garment.kind), keypoints, planned)
+    lines: list[FoldLine] = (
+        planned if task_id is None else fold_lines(find_task(task_id, episode.garment.kind), keypoints)
+    )
+    segmenter = episode.experiment.create("segmenters", "segmenter")
+    try:
+        mask = segmenter.segment(episode.final)
+    except GroundingError:
+        return episode
+    found = fidelity(
+        mask,
+        episode.final_state,
+        episode.initial_state,
+        episode.garment.mesh,
+        lines,
+        "self-referenced" if task_id is None else "keypoints",
+    )
+    return replace(episode, task=task_id, fidelity=found, ideal_lines=tuple(lines))
