@@ -10,10 +10,12 @@ from polyfold.view.overlay import overlay, value_map
 from polyfold.view.picture import grounding_picture, polygon_picture
 from polyfold.view.saving import png, save
 from polyfold.view.sheets import Card, garment_sheet, score_sheet
+from polyfold.view.shown import animate, show
 
 __all__ = [
     "Card",
     "Frame",
+    "animate",
     "filmstrip",
     "garment_sheet",
     "gif",
@@ -23,5 +25,6 @@ __all__ = [
     "polygon_picture",
     "save",
     "score_sheet",
+    "show",
     "value_map",
 ]
