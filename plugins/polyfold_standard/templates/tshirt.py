@@ -50,7 +50,7 @@ def tshirt_template() -> Template:
         parts=_parts(),
         canonical_shapes=[
             _shape(shoulder=0.25, length=0.72, sleeve=(0.22, 0.13), cuff=(-0.05, 0.15)),
-            _shape(shoulder=0.25, length=0.72, sleeve=(0.16, 0.18), cuff=(-0.09, 0.10)),
+            _shape(shoulder=0.25, length=0.72, sleeve=(0.18, 0.15), cuff=(-0.09, 0.12)),
             _shape(shoulder=0.19, length=0.72, sleeve=(0.16, 0.10), cuff=(-0.06, 0.13)),
         ],
         generator=SymmetricGenerator(NAMES, [(n, n.replace("_left", "_right")) for n in NAMES if n.endswith("_left")]),
@@ -114,32 +114,32 @@ def _parts() -> dict[str, tuple[str, ...]]:
 
 def _body() -> list[Penalty]:
     found = [
-        angle_range(HEM, SPINE, 70, 110, 5),
-        angle_range(SHOULDERS, SPINE, 70, 110, 5),
-        ratio_range(SPINE, SHOULDERS, 0.75, 2.2, 0.1),
-        ratio_range(SHOULDERS, HEM, 0.65, 1.35, 0.05),
+        angle_range(HEM, SPINE, 80, 100, 5),
+        angle_range(SHOULDERS, SPINE, 80, 100, 5),
+        ratio_range(SPINE, SHOULDERS, 1.0, 1.8, 0.15),
+        ratio_range(SHOULDERS, HEM, 0.78, 1.1, 0.08),
     ]
-    for side in SIDES:
+    for side, sign in (("left", 1.0), ("right", -1.0)):
         seam, armhole = (f"hem_{side}", f"armpit_{side}"), (f"armpit_{side}", f"shoulder_{side}")
         found += [
-            angle_range(seam, SPINE, -20, 20, 4),
-            # 25 degrees leave room for fits whose armpit slips along the sleeve.
-            angle_range(armhole, SPINE, -12, 12, 4),
-            ratio_range(armhole, SHOULDERS, 0.15, 0.65, 0.04),
-            position_range(f"armpit_{side}", SPINE, 0.45, 0.92, 0.04),
+            angle_range(seam, SPINE, -6, 6, 4),
+            # The contour hardly shows the shoulder; how the armhole leans and how long it is does.
+            angle_range(armhole, SPINE, *sorted((sign * 3, sign * 11)), 4),
+            ratio_range(armhole, SHOULDERS, 0.4, 0.53, 0.05),
+            position_range(f"armpit_{side}", SPINE, 0.6, 0.74, 0.04),
         ]
     return found
 
 
 def _collar() -> list[Penalty]:
     return [
-        ratio_range(NECK, SHOULDERS, 0.22, 0.58, 0.04),
-        position_range("neck_left", SHOULDERS, 0.18, 0.42, 0.03),
-        position_range("neck_right", SHOULDERS, 0.58, 0.82, 0.03),
-        offset_range("neck_left", SHOULDERS, -0.22, 0.03, 0.03),
-        offset_range("neck_right", SHOULDERS, -0.22, 0.03, 0.03),
-        position_range("neck_center", NECK, 0.35, 0.65, 0.04),
-        offset_range("neck_center", NECK, 0.0, 0.6, 0.05),
+        ratio_range(NECK, SHOULDERS, 0.33, 0.46, 0.05),
+        position_range("neck_left", SHOULDERS, 0.26, 0.35, 0.04),
+        position_range("neck_right", SHOULDERS, 0.65, 0.74, 0.04),
+        offset_range("neck_left", SHOULDERS, -0.13, -0.05, 0.04),
+        offset_range("neck_right", SHOULDERS, -0.13, -0.05, 0.04),
+        position_range("neck_center", NECK, 0.46, 0.54, 0.04),
+        offset_range("neck_center", NECK, 0.0, 0.7, 0.06),
     ]
 
 
@@ -147,17 +147,20 @@ def _sleeve(side: str, sign: float) -> list[Penalty]:
     """``sign`` is 1 on the left, where the sleeve turns anticlockwise from up and its cuff clockwise."""
     armpit, bottom, top, shoulder = f"armpit_{side}", f"sleeve_bottom_{side}", f"sleeve_top_{side}", f"shoulder_{side}"
     axis = ((armpit, shoulder), (bottom, top))
+    # Signed turns at the quad's corners: unsigned angles would let the sleeve cross itself, and without room between
+    # underarm and side seam its lower corner slips down the side.
     loop = [armpit, bottom, top, shoulder]
+    turns = {armpit: (35, 130), bottom: (40, 105), top: (70, 105), shoulder: (100, 145)}
     corners = [
-        angle_range((b, c), (a, b), *sorted((sign * 8, sign * 172)), 5)
+        angle_range((b, c), (a, b), *sorted((sign * turns[b][0], sign * turns[b][1])), 6)
         for a, b, c in zip(loop[-1:] + loop[:-1], loop, loop[1:] + loop[:1], strict=True)
     ]
     return [
         *corners,
-        angle_range((bottom, top), axis, *sorted((sign * 50, sign * 130)), 5),
-        angle_range(axis, SPINE, *sorted((-sign * 50, -sign * 160)), 5),
-        ratio_range(axis, SHOULDERS, 0.18, 1.3, 0.05),
-        ratio_range((bottom, top), (armpit, shoulder), 0.35, 1.3, 0.06),
+        angle_range((bottom, top), axis, *sorted((sign * 70, sign * 100)), 6),
+        angle_range(axis, SPINE, *sorted((-sign * 80, -sign * 135)), 8),
+        ratio_range(axis, SHOULDERS, 0.2, 0.55, 0.06),
+        ratio_range((bottom, top), (armpit, shoulder), 0.55, 0.85, 0.08),
     ]
 
 
@@ -170,4 +173,4 @@ def _likeness() -> list[Penalty]:
         ("hem", "armpit"),
         ("shoulder", "neck"),
     ]
-    return [ratio_range((f"{a}_left", f"{b}_left"), (f"{a}_right", f"{b}_right"), 0.67, 1.5, 0.08) for a, b in pairs]
+    return [ratio_range((f"{a}_left", f"{b}_left"), (f"{a}_right", f"{b}_right"), 0.92, 1.09, 0.1) for a, b in pairs]

@@ -1,0 +1,99 @@
+"""Fitting a flat garment at any rotation: starts, a symmetric stage, then every vertex on its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.geometry import polygon_area, rotate
+from polyfold.polygon import Template
+from polyfold_grounding.energy import Energy, FreeVertices, levenberg_marquardt
+from polyfold_grounding.evidence import Evidence
+
+__all__ = ["FlatFit", "Start", "fit_flat", "spread_starts"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FlatFit:
+    """One explanation of the silhouette.
+
+    Attributes:
+        vertices: the polygon [px], shape (V, 2).
+        energy: contour distance plus Γ, without unit.
+        heading: direction of the garment's left-to-right axis at the start [rad].
+    """
+
+    vertices: Floats
+    energy: float
+    heading: float
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """A canonical shape, scaled and turned into the picture."""
+
+    vertices: Floats
+    heading: float
+    energy: float
+
+
+def fit_flat(template: Template, evidence: Evidence, rotations: int = 24) -> list[FlatFit]:
+    """Fit the template at any rotation.
+
+    Returns:
+        Explanations with different headings, best first; at least one.
+    """
+    coarse, fine = Energy(template, evidence, 6.0), Energy(template, evidence, 3.0)
+    symmetric = []
+    for start in spread_starts(template, evidence, rotations):
+        vertices, energy = levenberg_marquardt(coarse, template.generator, start.vertices, 15)
+        symmetric.append(FlatFit(vertices, energy, start.heading))
+    symmetric.sort(key=lambda fit: fit.energy)
+    free = []
+    for fit in symmetric[:2]:
+        vertices, energy = levenberg_marquardt(fine, FreeVertices(), fit.vertices, 40)
+        free.append(FlatFit(vertices, energy, fit.heading))
+    return sorted(free, key=lambda fit: fit.energy)
+
+
+def spread_starts(template: Template, evidence: Evidence, rotations: int) -> list[Start]:
+    """The best starts at least 40 degrees apart, four at most."""
+    return _apart(_starts(template, evidence, rotations), 4, np.radians(40))
+
+
+def _starts(template: Template, evidence: Evidence, rotations: int) -> list[Start]:
+    """Every canonical shape at every rotation, with the cloth's area and centroid, best first."""
+    energy = Energy(template, evidence, 6.0)
+    area, centre = abs(polygon_area(evidence.contour)), _centroid(evidence.contour)
+    # The names of a cyclic template are handed out later, so that a quarter turn covers all of its headings.
+    span = np.pi / 2 if template.cyclic else 2 * np.pi
+    found = []
+    for shape in template.canonical_shapes:
+        scaled = (shape - _centroid(shape)) * np.sqrt(area / abs(polygon_area(shape)))
+        for heading in np.arange(rotations) * span / rotations:
+            vertices = rotate(scaled, heading) + centre
+            found.append(Start(vertices, float(heading), energy.value(vertices)))
+    return sorted(found, key=lambda start: start.energy)
+
+
+def _apart(ordered: Sequence[Start], count: int, angle: float) -> list[Start]:
+    """The first ``count`` whose headings differ by at least ``angle`` [rad]."""
+    chosen: list[Start] = []
+    for start in ordered:
+        turns = [abs((start.heading - other.heading + np.pi) % (2 * np.pi) - np.pi) for other in chosen]
+        if all(turn >= angle - 1e-9 for turn in turns):
+            chosen.append(start)
+        if len(chosen) == count:
+            break
+    return chosen
+
+
+def _centroid(polygon: Floats) -> Floats:
+    following = np.roll(polygon, -1, axis=0)
+    cross = polygon[:, 0] * following[:, 1] - following[:, 0] * polygon[:, 1]
+    return ((polygon + following) * cross[:, None]).sum(0) / (3.0 * cross.sum())

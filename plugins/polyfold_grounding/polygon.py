@@ -1,0 +1,74 @@
+"""The grounding ``polygon``: the parameterized polygon model, fitted once and followed from fold to fold."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from polyfold.polygon import FoldedModel, Template
+from polyfold.types import FoldLine, Observation, Scene
+
+__all__ = ["PolygonGrounding"]
+
+
+class PolygonGrounding:
+    """Fits the garment's template to the silhouette, then follows it. Implements :class:`polyfold.interfaces.Grounding`.
+
+    The first picture is fitted from all rotations; corners of squares and rectangles are named there, by the edge
+    nearest the image's top, and keep their names. After a fold the previous model is folded along the line and
+    refitted; if that explains the picture badly, the garment was displaced and is searched at all rotations.
+    """
+
+    class Config(BaseModel):
+        """Parameters of the fit."""
+
+        model_config = ConfigDict(extra="forbid", frozen=True)
+
+        optimizer: Literal["lm", "pattern"] = Field(
+            "lm", description="Levenberg-Marquardt, or Miller's pattern search as in the paper (much slower)"
+        )
+        rotations: int = Field(24, ge=4, le=360, description="headings tried in the first picture")
+        displaced_px: float = Field(
+            5.0, gt=0.0, description="Chamfer distance above which a garment is searched at all rotations [px]"
+        )
+
+    def __init__(self, config: Config | None = None) -> None:
+        self.config = config or self.Config()
+
+    def ground(
+        self,
+        observation: Observation,
+        mask: NDArray[np.bool_],
+        template: Template,
+        previous: Scene | None = None,
+        fold_line: FoldLine | None = None,
+    ) -> Scene:
+        """Ground one picture; see :class:`polyfold.interfaces.Grounding`.
+
+        Raises:
+            GroundingError: if too little cloth is visible.
+        """
+        from polyfold_grounding.evidence import Evidence
+        from polyfold_grounding.tracking import first_model, next_model
+
+        evidence = Evidence.of(mask)
+        if previous is None or previous.model is None:
+            tracked = first_model(template, evidence, self.config.rotations, self.config.optimizer)
+        else:
+            tracked = next_model(previous.model, fold_line, evidence, self.config.displaced_px)
+        return self._scene(template, mask, evidence.contour, tracked.model, tracked.chamfer, tracked.notes)
+
+    def _scene(
+        self,
+        template: Template,
+        mask: NDArray[np.bool_],
+        contour: NDArray[np.float64],
+        model: FoldedModel,
+        residual: float,
+        notes: tuple[str, ...],
+    ) -> Scene:
+        size = (mask.shape[1], mask.shape[0])
+        return Scene(template.kind, size, mask, contour, model, model.to_text(size), residual, notes)

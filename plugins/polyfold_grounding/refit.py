@@ -1,0 +1,167 @@
+"""Following a garment from fold to fold: the skeleton and earlier folds are frozen, five numbers are refitted.
+
+The paper refits all parameters; freezing them, and registering rigidly first, is this implementation's choice, because
+freeing them made it worse with every fold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.geometry import resample
+from polyfold.polygon import FoldedModel
+from polyfold.types import FoldLine
+from polyfold_grounding import fold_terms
+from polyfold_grounding.evidence import Evidence
+
+__all__ = ["Refit", "Silhouette", "refit_fold", "register"]
+
+Floats = NDArray[np.float64]
+
+_WEIGHT = 30.0
+
+_SIGMAS = np.array([15.0, 15.0, np.radians(8.0), 8.0, np.radians(6.0)])
+"""How far a fold usually moves the garment, and misses its line: shift [px at scale 1], turn, offset [px], turn."""
+
+_FAR = 1e5
+"""Offset of a line that lifts nothing [px]."""
+
+_SPREAD = [(0.0, 0.0), (7.0, 6.0), (7.0, -6.0), (-7.0, 6.0), (-7.0, -6.0)]
+"""Further starts for the line [px, degrees]: half folds have two basins, the base moved or the flap moved."""
+
+
+@dataclass(frozen=True, eq=False)
+class Refit:
+    """One explanation of the silhouette by a moved model.
+
+    Attributes:
+        parameters: shift [px], turn [rad], and the last line's offset [px] and turn [rad], shape (5,).
+        energy: contour distance plus priors, without unit.
+        chamfer: Chamfer distance [px].
+    """
+
+    parameters: Floats
+    energy: float
+    chamfer: float
+
+
+class Silhouette:
+    """A model's silhouette before its last fold, ready to be folded along a line, moved and compared."""
+
+    def __init__(self, model: FoldedModel, line: FoldLine | None, evidence: Evidence) -> None:
+        self._model, self._line, self._evidence = model, line, evidence
+        self._outline = np.ascontiguousarray(model.outline())
+        self._boundary = resample(self._outline, 240)
+        after = model.fold(line).outline() if line else self._outline
+        self.centre = (after.min(0) + after.max(0)) / 2
+        if line is None:
+            self._pivot, self._angle = self.centre, 0.0
+        else:
+            start, end = np.array(line.start), np.array(line.end)
+            self._pivot, self._angle = (start + end) / 2, float(np.arctan2(*(end - start)[::-1]))
+
+    @property
+    def folds(self) -> bool:
+        """Whether there is a fold line to refit."""
+        return self._line is not None
+
+    @property
+    def rest(self) -> Floats:
+        """Parameters of the model as planned."""
+        return np.array([0.0, 0.0, 0.0, 0.0 if self._line else _FAR, 0.0])
+
+    def minimise(
+        self, start: Floats, free: tuple[int, ...], delta: float, anchored: bool = True, iterations: int = 25
+    ) -> Refit:
+        """Levenberg-Marquardt over the ``free`` parameters; ``anchored`` keeps the priors on the garment's motion."""
+        scale = self._evidence.scale
+        sigmas = _SIGMAS * np.array([scale, scale, 1.0, scale, 1.0])
+        precision = 1.0 / sigmas**2
+        if not anchored:
+            precision[:3] = 0.0
+        index = np.array(free)
+        precision = np.where(np.isin(np.arange(5), index), precision, 0.0)
+        parameters, damping = start.copy(), 1e-2
+        cost, chamfer, gradient, hessian = self._terms(parameters, precision, delta)
+        for _ in range(iterations):
+            curvature = hessian[np.ix_(index, index)]
+            step = np.zeros(5)
+            damped = curvature + np.diag(damping * np.diag(curvature) + 1e-9)
+            step[index] = -np.linalg.solve(damped, gradient[index])
+            result = self._terms(parameters + step, precision, delta)
+            if result[0] < cost:
+                gain = cost - result[0]
+                parameters = parameters + step
+                cost, chamfer, gradient, hessian = result
+                damping = max(damping / 4, 1e-7)
+                if gain < 1e-3 * max(cost, 1.0):
+                    break
+            else:
+                damping *= 6
+                if damping > 1e6:
+                    break
+        return Refit(parameters, cost, chamfer)
+
+    def moved(self, parameters: Floats) -> FoldedModel:
+        """The model, folded along the refitted line and moved."""
+        model = self._model
+        if self._line is not None:
+            model = model.fold(self.line(parameters))
+        return model.transformed(float(parameters[2]), parameters[:2], self.centre)
+
+    def line(self, parameters: Floats) -> FoldLine:
+        """The refitted line, before the motion."""
+        half = self._line.length / 2
+        angle = self._angle + parameters[4]
+        along, left = np.array([np.cos(angle), np.sin(angle)]), np.array([np.sin(angle), -np.cos(angle)])
+        middle = self._pivot + parameters[3] * left
+        return FoldLine.between(middle - half * along, middle + half * along)
+
+    def _terms(self, parameters: Floats, precision: Floats, delta: float):
+        evidence = self._evidence
+        cost, chamfer, gradient, hessian = fold_terms.fold_normal_equations(
+            self._boundary,
+            self._outline,
+            self.centre,
+            self._pivot,
+            self._angle,
+            parameters,
+            evidence.samples,
+            evidence.field,
+            evidence.margin,
+            delta * evidence.scale,
+        )
+        weight = _WEIGHT / evidence.scale**2
+        prior = precision * parameters
+        return (
+            weight * cost + 0.5 * float(prior @ parameters),
+            chamfer,
+            weight * gradient + prior,
+            weight * hessian + np.diag(precision),
+        )
+
+
+def refit_fold(silhouette: Silhouette) -> list[Refit]:
+    """Explanations of the picture after a fold, best first: rigid registration, then six starts for five numbers."""
+    rigid = silhouette.minimise(silhouette.rest, (0, 1, 2), 15.0)
+    starts = [silhouette.rest]
+    for offset, turn in _SPREAD:
+        starts.append(rigid.parameters + np.array([0.0, 0.0, 0.0, offset, np.radians(turn)]))
+    found = [silhouette.minimise(start, (0, 1, 2, 3, 4), 4.0) for start in starts]
+    return sorted(found, key=lambda refit: refit.energy)
+
+
+def register(silhouette: Silhouette, evidence: Evidence, rotations: int = 24) -> list[Refit]:
+    """Rigid explanations from all rotations, best first, for a garment that was displaced."""
+    shift = (evidence.contour.min(0) + evidence.contour.max(0)) / 2 - silhouette.centre
+    coarse = []
+    for turn in np.arange(rotations) * 2 * np.pi / rotations:
+        start = silhouette.rest + np.array([*shift, turn, 0.0, 0.0])
+        coarse.append(silhouette.minimise(start, (0, 1, 2), 15.0, anchored=False, iterations=6))
+    coarse.sort(key=lambda refit: refit.energy)
+    free = (0, 1, 2, 3, 4) if silhouette.folds else (0, 1, 2)
+    fine = [silhouette.minimise(refit.parameters, free, 4.0, anchored=False) for refit in coarse[:4]]
+    return sorted(fine, key=lambda refit: refit.energy)
