@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from polyfold.garments import Garment, Outline, curved_outline, mesh_panels
+from polyfold.garments import Garment, Outline, Pattern, curved_outline, mesh_panels
 from polyfold_standard.colours import fabric_colours
 
-__all__ = ["cloth_garment", "cloth_outline"]
+__all__ = ["CLOTH", "cloth_garment", "cloth_outline"]
 
 CORNERS = ("bottom_left", "top_left", "top_right", "bottom_right")
+
+CLOTH = Pattern(
+    corners=CORNERS, top=("top_left", "top_right"), bottom=("bottom_left", "bottom_right"), size=0.35, cyclic=CORNERS
+)
 
 
 def cloth_outline(width: float, height: float, rng: np.random.Generator) -> Outline:

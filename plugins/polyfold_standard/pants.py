@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.garments import Garment, Outline, curved_outline, mesh_panels
+from polyfold.garments import Garment, Outline, Pattern, curved_outline, mesh_panels
 from polyfold_standard.colours import fabric_colours
 
 if TYPE_CHECKING:
@@ -15,10 +15,25 @@ if TYPE_CHECKING:
 
 __all__ = ["Pants"]
 
-OPENINGS = (
-    ("leg_inner_left", "leg_outer_left"),
-    ("waist_left", "waist_right"),
-    ("leg_outer_right", "leg_inner_right"),
+PATTERN = Pattern(
+    corners=(
+        "leg_inner_left",
+        "leg_outer_left",
+        "waist_left",
+        "waist_right",
+        "leg_outer_right",
+        "leg_inner_right",
+        "crotch",
+    ),
+    top=("waist_left", "waist_right"),
+    bottom=("leg_outer_left", "leg_outer_right"),
+    size=0.8,
+    layers=2,
+    openings=(
+        ("leg_inner_left", "leg_outer_left"),
+        ("waist_left", "waist_right"),
+        ("leg_outer_right", "leg_inner_right"),
+    ),
 )
 
 
@@ -26,6 +41,7 @@ class Pants:
     """Trousers of 0.62 to 0.95 m length, straight to flared."""
 
     kind: ClassVar[str] = "pants"
+    pattern: ClassVar[Pattern] = PATTERN
 
     def template(self) -> Template:
         """The polygon template."""
@@ -44,7 +60,7 @@ def _outline(rng: np.random.Generator) -> Outline:
     length = rng.uniform(0.62, 0.95)
     waist = float(np.clip(length * rng.uniform(0.40, 0.54), 0.28, 0.46))
     corners = _corners(length, waist, rng)
-    return curved_outline(corners, bulges=_bulges(waist, rng), rounding=_rounding(rng), openings=OPENINGS)
+    return curved_outline(corners, bulges=_bulges(waist, rng), rounding=_rounding(rng), openings=PATTERN.openings)
 
 
 def _corners(length: float, waist: float, rng: np.random.Generator) -> dict[str, NDArray[np.float64]]:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from polyfold.garments import Garment
-from polyfold_standard.cloth import cloth_garment, cloth_outline
+from polyfold.garments import Garment, Pattern
+from polyfold_standard.cloth import CLOTH, cloth_garment, cloth_outline
 
 if TYPE_CHECKING:
     from polyfold.polygon import Template
@@ -19,6 +19,7 @@ class Square:
     """Square cloths, such as napkins, of 0.25 to 0.45 m."""
 
     kind: ClassVar[str] = "square"
+    pattern: ClassVar[Pattern] = CLOTH
 
     def template(self) -> Template:
         """The polygon template."""

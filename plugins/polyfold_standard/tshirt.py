@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.garments import Garment, Outline, curved_outline, mesh_panels
+from polyfold.garments import Garment, Outline, Pattern, curved_outline, mesh_panels
 from polyfold_standard.colours import fabric_colours
 
 if TYPE_CHECKING:
@@ -16,11 +16,32 @@ if TYPE_CHECKING:
 
 __all__ = ["TShirt"]
 
-OPENINGS = (
-    ("sleeve_bottom_left", "sleeve_top_left"),
-    ("neck_left", "neck_right"),
-    ("sleeve_top_right", "sleeve_bottom_right"),
-    ("hem_right", "hem_left"),
+PATTERN = Pattern(
+    corners=(
+        "hem_left",
+        "armpit_left",
+        "sleeve_bottom_left",
+        "sleeve_top_left",
+        "shoulder_left",
+        "neck_left",
+        "neck_center",
+        "neck_right",
+        "shoulder_right",
+        "sleeve_top_right",
+        "sleeve_bottom_right",
+        "armpit_right",
+        "hem_right",
+    ),
+    top=("neck_left", "neck_right"),
+    bottom=("hem_left", "hem_right"),
+    size=0.85,
+    layers=2,
+    openings=(
+        ("sleeve_bottom_left", "sleeve_top_left"),
+        ("neck_left", "neck_right"),
+        ("sleeve_top_right", "sleeve_bottom_right"),
+        ("hem_right", "hem_left"),
+    ),
 )
 
 
@@ -28,6 +49,7 @@ class TShirt:
     """T-shirts of 0.38 to 0.65 m chest and 0.62 to 0.75 m length, with short to elbow-long sleeves."""
 
     kind: ClassVar[str] = "tshirt"
+    pattern: ClassVar[Pattern] = PATTERN
 
     def template(self) -> Template:
         """The polygon template."""
@@ -63,7 +85,7 @@ def _outline(rng: np.random.Generator) -> Outline:
         edges=_neckline(corners, rng),
         bulges=_bulges(chest, rng),
         rounding=_rounding(rng),
-        openings=OPENINGS,
+        openings=PATTERN.openings,
     )
 
 

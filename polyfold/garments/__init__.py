@@ -3,6 +3,24 @@
 from polyfold.garments.garment import Garment, Mesh
 from polyfold.garments.naming import name_by_pose
 from polyfold.garments.outline import Outline, curved_outline
+from polyfold.garments.outline_files import load_mask, load_outline, load_picture, outline_from_photo
 from polyfold.garments.panels import mesh_panels
+from polyfold.garments.pattern import Pattern
+from polyfold.garments.silhouette import find_cloth
+from polyfold.garments.twin import twin_from_outline
 
-__all__ = ["Garment", "Mesh", "Outline", "curved_outline", "mesh_panels", "name_by_pose"]
+__all__ = [
+    "Garment",
+    "Mesh",
+    "Outline",
+    "Pattern",
+    "curved_outline",
+    "find_cloth",
+    "load_mask",
+    "load_outline",
+    "load_picture",
+    "mesh_panels",
+    "name_by_pose",
+    "outline_from_photo",
+    "twin_from_outline",
+]
