@@ -14,32 +14,49 @@ __all__ = ["build_pairs", "pair_normals", "resolve_pairs", "vertex_normals"]
 
 @njit(cache=True, fastmath=True)
 def vertex_normals(x, corners, use, normals):
-    """Area-weighted unit normals of the particles into ``normals``, shape (N, 3)."""
+    """Area-weighted mean normals of the particles into ``normals``, shape (N, 3).
+
+    Their length says how flat the sheet is there: 1 where all triangles agree, near 0 on a sharp crease.
+    """
+    areas = np.full(x.shape[0], np.float32(1e-20), np.float32)
     normals[:, :] = np.float32(0.0)
     for t in range(corners.shape[0]):
         a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
         ux, uy, uz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
         vx, vy, vz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
         nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        area = np.sqrt(nx * nx + ny * ny + nz * nz)
         for k in range(3):
             vertex, weight = corners[t, k], use[t, k]
             normals[vertex, 0] += weight * nx
             normals[vertex, 1] += weight * ny
             normals[vertex, 2] += weight * nz
+            areas[vertex] += weight * area
     for i in range(x.shape[0]):
-        length = np.sqrt(normals[i, 0] ** 2 + normals[i, 1] ** 2 + normals[i, 2] ** 2) + np.float32(1e-20)
-        inverse = np.float32(1.0) / length
+        inverse = np.float32(1.0) / areas[i]
         normals[i, 0] *= inverse
         normals[i, 1] *= inverse
         normals[i, 2] *= inverse
 
 
 @njit(cache=True, fastmath=True)
-def build_pairs(x, normals, excluded_start, excluded, radius, thickness, pad, old_start, old_j, old_side, start, pj, side):
+def _side_of(normals, i, dx, dy, dz, d2, radius_2):
+    """On which side of particle i's disc the offset lies (+-1), and whether it is over the disc."""
+    nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
+    along = nx * dx + ny * dy + nz * dz
+    flat_2 = nx * nx + ny * ny + nz * nz + np.float32(1e-12)
+    return np.int8(1) if along >= 0 else np.int8(-1), d2 - along * along / flat_2 < radius_2
+
+
+@njit(cache=True, fastmath=True)
+def build_pairs(
+    x, normals, excluded_start, excluded, radius, thickness, pad, old_start, old_j, old_side, start, pj, side
+):  # fmt: skip
     """Fill the list of pairs that may touch before a particle has moved by half of ``pad``.
 
-    Pairs are kept by first particle: ``pj[start[i]:start[i + 1]]`` with ``side`` +-1. A pair of the old list that is
-    still within its discs keeps its side. Returns the number of pairs, or -1 if ``pj`` is too short.
+    Pairs are kept by first particle: ``pj[start[i]:start[i + 1]]``. ``side`` holds, for each, the side of i on which
+    j is and the side of j on which i is. A pair of the old list keeps a side while one is still over the other's disc.
+    Returns the number of pairs, or -1 if ``pj`` is too short.
     """
     count = x.shape[0]
     reach = radius + pad
@@ -68,7 +85,7 @@ def build_pairs(x, normals, excluded_start, excluded, radius, thickness, pad, ol
         fill[cell_of[i]] += 1
         members[at] = i
         sorted_x[at, 0], sorted_x[at, 1], sorted_x[at, 2] = x[i, 0], x[i, 1], x[i, 2]
-    reach_2 = reach * reach + tall * tall
+    reach_2, radius_2 = reach * reach, radius * radius
     pairs = 0
     for i in range(count):
         start[i] = pairs
@@ -84,15 +101,6 @@ def build_pairs(x, normals, excluded_start, excluded, radius, thickness, pad, ol
                 j = members[m]
                 if j <= i:
                     continue
-                aligned = normals[i, 0] * normals[j, 0] + normals[i, 1] * normals[j, 1] + normals[i, 2] * normals[j, 2]
-                sign = np.float32(1.0) if aligned >= 0 else np.float32(-1.0)
-                nx = normals[i, 0] + sign * normals[j, 0]
-                ny = normals[i, 1] + sign * normals[j, 1]
-                nz = normals[i, 2] + sign * normals[j, 2]
-                along = (nx * dx + ny * dy + nz * dz) / np.sqrt(nx * nx + ny * ny + nz * nz + np.float32(1e-20))
-                lateral_2 = d2 - along * along
-                if abs(along) > tall or lateral_2 > reach * reach:
-                    continue
                 skip = False
                 for k in range(excluded_start[i], excluded_start[i + 1]):
                     if excluded[k] == j:
@@ -100,16 +108,26 @@ def build_pairs(x, normals, excluded_start, excluded, radius, thickness, pad, ol
                         break
                 if skip:
                     continue
-                which = np.int8(1) if along >= 0 else np.int8(-1)
-                if lateral_2 < radius * radius:
+                nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
+                if nx * normals[j, 0] + ny * normals[j, 1] + nz * normals[j, 2] >= 0:
+                    nx, ny, nz = nx + normals[j, 0], ny + normals[j, 1], nz + normals[j, 2]
+                else:
+                    nx, ny, nz = nx - normals[j, 0], ny - normals[j, 1], nz - normals[j, 2]
+                if abs(nx * dx + ny * dy + nz * dz) > tall * np.sqrt(nx * nx + ny * ny + nz * nz):
+                    continue
+                side_i, over_i = _side_of(normals, i, dx, dy, dz, d2, radius_2)
+                side_j, over_j = _side_of(normals, j, -dx, -dy, -dz, d2, radius_2)
+                if over_i or over_j:
                     for k in range(old_start[i], old_start[i + 1]):
                         if old_j[k] == j:
-                            which = old_side[k]
+                            side_i = old_side[k, 0] if over_i else side_i
+                            side_j = old_side[k, 1] if over_j else side_j
                             break
                 if pairs >= pj.shape[0]:
                     return -1
                 pj[pairs] = j
-                side[pairs] = which
+                side[pairs, 0] = side_i
+                side[pairs, 1] = side_j
                 pairs += 1
     start[count] = pairs
     return pairs
@@ -117,16 +135,21 @@ def build_pairs(x, normals, excluded_start, excluded, radius, thickness, pad, ol
 
 @njit(cache=True, fastmath=True)
 def pair_normals(normals, start, pj, side, pair_normal):
-    """Common normal of each pair, pointing from its first particle to the side where the second belongs."""
+    """Unit direction from the first particle of each pair to the side where the second belongs.
+
+    Each particle's opinion counts as much as the sheet is flat there. Zero where that gives no clear direction, on
+    creases: such a pair is kept apart as two small spheres.
+    """
+    unclear = np.float32(0.6)
     for i in range(start.shape[0] - 1):
         for p in range(start[i], start[i + 1]):
             j = pj[p]
-            aligned = normals[i, 0] * normals[j, 0] + normals[i, 1] * normals[j, 1] + normals[i, 2] * normals[j, 2]
-            sign = np.float32(1.0) if aligned >= 0 else np.float32(-1.0)
-            nx = normals[i, 0] + sign * normals[j, 0]
-            ny = normals[i, 1] + sign * normals[j, 1]
-            nz = normals[i, 2] + sign * normals[j, 2]
-            scale = np.float32(side[p]) / np.sqrt(nx * nx + ny * ny + nz * nz + np.float32(1e-20))
+            si, sj = np.float32(side[p, 0]), np.float32(side[p, 1])
+            nx = si * normals[i, 0] - sj * normals[j, 0]
+            ny = si * normals[i, 1] - sj * normals[j, 1]
+            nz = si * normals[i, 2] - sj * normals[j, 2]
+            length = np.sqrt(nx * nx + ny * ny + nz * nz)
+            scale = np.float32(1.0) / length if length > unclear else np.float32(0.0)
             pair_normal[p, 0], pair_normal[p, 1], pair_normal[p, 2] = nx * scale, ny * scale, nz * scale
 
 
@@ -147,7 +170,13 @@ def resolve_pairs(x, previous, mobility, start, pj, pair_normal, radius, thickne
             along = nx * dx + ny * dy + nz * dz
             if along >= thickness:
                 continue
-            if dx * dx + dy * dy + dz * dz - along * along > radius_2:
+            d2 = dx * dx + dy * dy + dz * dz
+            if nx == zero and ny == zero and nz == zero:
+                if d2 >= thickness * thickness or d2 < np.float32(1e-12):
+                    continue
+                along = np.sqrt(d2)
+                nx, ny, nz = dx / along, dy / along, dz / along
+            elif d2 - along * along > radius_2:
                 continue
             total = mobility[i] + mobility[j]
             if total == zero:

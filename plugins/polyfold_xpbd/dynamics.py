@@ -149,7 +149,7 @@ def advance(
             vertex_normals(x, corners, use, normals)
             old_start[:] = start
             old_j[: start[-1]] = pj[: start[-1]]
-            old_side[: start[-1]] = side[: start[-1]]
+            old_side[: start[-1], :] = side[: start[-1], :]
             found = build_pairs(
                 x, normals, excluded_start, excluded, radius, thickness, pad,
                 old_start, old_j, old_side, start, pj, side,

@@ -15,8 +15,11 @@ Floats = NDArray[np.float32]
 
 REACH = 0.015
 """A gripper holds the cloth, all layers of it, within this distance of the pick [m]."""
-LIFT_RATIO, HIGHEST = 0.45, 0.30
-"""Height of the path as a share of the distance from pick to place, and its upper limit [m]."""
+RISING, FALLING, HIGHEST = 0.35, 0.35, 0.30
+"""Height of the path's first and second half as shares of the distance from pick to place; upper limit [m].
+
+Lower on the way down: a flap that is laid down taut drags what lies below it along.
+"""
 SPEED, RAMP, HOLD = 0.5, 0.15, 0.05
 """Speed of the gripper [m/s], time to reach it and to stop [s], and pause before it opens [s]."""
 
@@ -89,11 +92,11 @@ def plan_motion(grasp: Grasp, time_step: float) -> Motion:
     """Half ellipses from pick to place, all arms arriving together, followed by a short hold."""
     span = (grasp.ends - grasp.starts)[:, :2]
     distance = np.hypot(*span.T)
-    height = np.minimum(LIFT_RATIO * distance, HIGHEST)
-    longest = float((np.pi * np.sqrt(((distance / 2) ** 2 + height**2) / 2)).max())
+    longest = float((np.pi * np.sqrt(((distance / 2) ** 2 + np.minimum(RISING * distance, HIGHEST) ** 2) / 2)).max())
     progress = _eased(longest, time_step)
     angles = np.pi * progress
     swing = (1.0 - np.cos(angles)) / 2
+    height = np.minimum((RISING + (FALLING - RISING) * swing)[:, None] * distance, HIGHEST)
     path = np.empty((len(progress), len(span), 3))
     path[:, :, :2] = grasp.starts[:, :2] + swing[:, None, None] * span
     rise = grasp.starts[:, 2] + progress[:, None] * (grasp.ends - grasp.starts)[:, 2]

@@ -66,7 +66,7 @@ class Solver:
         self._start, self._old_start = np.zeros(count + 1, np.int32), np.zeros(count + 1, np.int32)
         capacity = PAIRS_PER_PARTICLE * count
         self._second, self._old_second = np.zeros(capacity, np.uint32), np.zeros(capacity, np.uint32)
-        self._side, self._old_side = np.zeros(capacity, np.int8), np.zeros(capacity, np.int8)
+        self._side, self._old_side = np.zeros((capacity, 2), np.int8), np.zeros((capacity, 2), np.int8)
         self._pair_normal = np.zeros((capacity, 3), np.float32)
         self._clock = np.array([-1, 0], np.int64)
 
