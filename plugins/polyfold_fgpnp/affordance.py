@@ -24,6 +24,7 @@ __all__ = [
     "nearest_point",
     "quadrilateral_area",
     "second_pick",
+    "slide",
     "to_action",
 ]
 
@@ -34,6 +35,9 @@ LEAST_DEPTH_PX = 4.0
 
 SIDE_SHARE = 0.3
 """Pieces left of the line that reach less than this share as far from it as the largest one aren't picked at."""
+
+GAP_PX = 4.0
+"""Neighbours on the contour lie closer than this; a longer step leads over the fold line to another piece."""
 
 
 class PickConfig(BaseModel):
@@ -210,6 +214,28 @@ def _hull_corners(region: FoldRegion) -> tuple[Floats, Floats]:
 def _first_best(scores: Floats) -> int:
     """Index of the highest score; the first one among scores that differ by rounding only."""
     return int(np.flatnonzero(scores >= scores.max() - 1e-9)[0])
+
+
+def slide(region: FoldRegion, pick: ArrayLike, towards: ArrayLike, share: float) -> Floats:
+    """Move a contour pixel [px], shape (2,), along the contour towards another one, by a share of their distance.
+
+    Cloth that is held at its outermost corners sags between them and the crease; held a little further in, both sides
+    of each pick balance. It stops where the lifted part's contour ends.
+    """
+    pick, towards = np.asarray(pick, float), np.asarray(towards, float)
+    distance = share * float(np.hypot(*(towards - pick)))
+    at = int(np.argmin(((region.points - pick) ** 2).sum(1)))
+    onwards = np.roll(region.points, -at, axis=0)
+    backwards = np.roll(onwards[::-1], 1, axis=0)
+    ends = [_walk(path, distance) for path in (onwards, backwards)]
+    return min(ends, key=lambda end: float(np.hypot(*(end - towards))))
+
+
+def _walk(path: Floats, distance: float) -> Floats:
+    """The point that far along a polyline [px], or the last one before a gap."""
+    steps = np.hypot(*np.diff(path, axis=0).T)
+    beyond = (np.cumsum(steps) > distance + 1e-9) | (steps > GAP_PX)
+    return path[int(np.argmax(beyond))] if beyond.any() else path[-1]
 
 
 def to_action(region: FoldRegion, first: ArrayLike, second: ArrayLike, config: PickConfig) -> Action:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from pydantic import Field
 
 from polyfold.errors import PlanError
 from polyfold.types import Action, FoldLine, Scene
 
-from .affordance import FoldRegion, PickConfig, best_pair, fold_region, nearest_point, second_pick, to_action
+from .affordance import FoldRegion, PickConfig, best_pair, fold_region, nearest_point, second_pick, slide, to_action
 
 __all__ = ["Caso", "Farthest", "VertexRandom"]
 
@@ -16,10 +17,16 @@ NEAR_CONTOUR_PX = 25.0
 
 
 class Caso:
-    """The pair of contour pixels with the best affordance score (conditional affordance score optimisation)."""
+    """The pair of contour pixels with the best affordance score (conditional affordance score optimisation).
+
+    Each of two picks then slides along the contour towards the other by a tenth of their distance. That is not in the
+    paper (0 turns it off): in simulation it halves the error of trouser legs folded over and hardly changes the rest.
+    """
 
     class Config(PickConfig):
         """Parameters."""
+
+        slide: float = Field(0.1, ge=0, lt=0.5, description="share of their distance that two picks move together")
 
     def __init__(self, config: Config | None = None) -> None:
         self.config = config or self.Config()
@@ -27,7 +34,10 @@ class Caso:
     def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
         """Pick the best pair; ``rng`` is not used."""
         region = fold_region(fold_line, scene)
-        return to_action(region, *best_pair(region, self.config.gamma), self.config)
+        first, second = best_pair(region, self.config.gamma)
+        share = self.config.slide
+        picks = slide(region, first, second, share), slide(region, second, first, share)
+        return to_action(region, *picks, self.config)
 
 
 class VertexRandom:

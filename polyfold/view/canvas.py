@@ -45,9 +45,7 @@ class Canvas:
         """A length of the result [px] in pixels of the picture given."""
         return float(pixels * self.OVERSAMPLE / self._scale[0])
 
-    def line(
-        self, points: ArrayLike, colour: Colour, width: float, dash: float = 0.0, opacity: float = 1.0
-    ) -> None:
+    def line(self, points: ArrayLike, colour: Colour, width: float, dash: float = 0.0, opacity: float = 1.0) -> None:
         """A polyline with round ends, shape (N, 2), dashed where ``dash`` [px] is given."""
         at = self._to_image(points)
         pieces = _dashes(at, dash * self.OVERSAMPLE) if dash else [at]

@@ -131,8 +131,7 @@ def _arrowhead(tip: Floats, along: Floats, length: float, half_width: float) -> 
 def draw_action(canvas: Canvas, action: Action) -> None:
     """Picks as discs and places as tips of arrows that curve away from each other, one colour per arm."""
     curves = [
-        _curve(pick, place, side)
-        for pick, place, side in zip(action.picks, action.places, _bends(action), strict=True)
+        _curve(pick, place, side) for pick, place, side in zip(action.picks, action.places, _bends(action), strict=True)
     ]
     for curve in curves:
         _draw_arrow(canvas, curve, PAPER, 2.6)

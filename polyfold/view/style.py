@@ -34,7 +34,7 @@ def font(size: int, bold: bool = False) -> Any:
     from PIL import ImageFont
 
     spec = find_spec("matplotlib")
-    for folder in (spec.submodule_search_locations if spec and spec.submodule_search_locations else ()):
+    for folder in spec.submodule_search_locations if spec and spec.submodule_search_locations else ():
         name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
         file = Path(folder) / "mpl-data" / "fonts" / "ttf" / name
         if file.is_file():
