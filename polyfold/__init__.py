@@ -36,7 +36,29 @@ _PUBLIC = {
     "register": "polyfold.plugins",
 }
 
-__all__ = [*sorted(_PUBLIC), "__version__", "plugins"]  # noqa: PLE0604
+__all__ = [
+    "Action",
+    "Camera",
+    "Decision",
+    "Episode",
+    "Experiment",
+    "FoldLine",
+    "FoldedModel",
+    "Garment",
+    "Observation",
+    "PolyfoldError",
+    "RefusedError",
+    "Scene",
+    "Subgoal",
+    "Template",
+    "__version__",
+    "fold",
+    "garment",
+    "ground",
+    "hookimpl",
+    "plugins",
+    "register",
+]
 
 if TYPE_CHECKING:
     from polyfold import plugins

@@ -61,7 +61,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why an episode ended early: the stage (``refused``, ``grounding``, ``planning``, ``execution``) and the reason."""
+    """Why an episode ended early: the stage (``refused``, ``grounding``, ``planning``, ``execution``), the reason."""
 
     stage: str
     reason: str
@@ -144,10 +144,10 @@ def run_episode(
         simulator, agent: instances to reuse; by default they are constructed from the experiment.
     """
     template = plugins.create("garments", garment.kind).template()
-    transcript = Transcript(experiment.create("llms", "llm"))
+    agent = agent or build_agent(experiment)
+    transcript = Transcript(experiment.create("llms", "llm") if "instruction" in agent.requires else None)
     own_simulator = simulator is None
     simulator = simulator or experiment.create("simulators", "simulator")
-    agent = agent or build_agent(experiment)
     seconds: dict[str, float] = {}
     try:
         clock = time.perf_counter()

@@ -36,8 +36,8 @@ def fold(
 
     Args:
         instruction: what to do, for example ``"fold the t-shirt into a rectangular block"``.
-        garment: a kind (``tshirt``, ``pants``, ``square``, ``rectangle``, ...), of which ``seed`` picks the instance, or
-            a garment made by :func:`polyfold.garment`.
+        garment: a kind (``tshirt``, ``pants``, ``square``, ``rectangle``, ...), of which ``seed`` picks the instance,
+            or a garment made by :func:`polyfold.garment`.
         seed: picks the garment and how it lies, and the agent's random choices.
         task: id of the standard task to judge against; by default the plan is recognised as one where it is.
         out: directory for ``episode.json``, ``transcript.jsonl``, ``filmstrip.png`` and ``fold.gif``.

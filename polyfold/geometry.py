@@ -81,7 +81,7 @@ def perpendicular_bisector(pick: ArrayLike, place: ArrayLike) -> tuple[Points, P
 
 
 def rotate(points: ArrayLike, angle: float, centre: ArrayLike = (0.0, 0.0)) -> Points:
-    """Points turned by ``angle`` [rad] about ``centre``; x towards y is positive (clockwise on screen when y is down)."""
+    """Points turned by ``angle`` [rad] about ``centre``; x towards y is positive (clockwise on screen, y down)."""
     c, s = np.cos(angle), np.sin(angle)
     centre = np.asarray(centre, float)
     return (np.asarray(points, float) - centre) @ np.array([[c, s], [-s, c]]) + centre

@@ -20,8 +20,8 @@ Each ``register_*`` hook gets a function ``register(name, target, summary="", ne
 * ``needs``: distributions to install before the component can be used, as pip names them; a missing one is answered
   with the pip command.
 
-What the class must do stands in :mod:`polyfold.interfaces`. The ``on_*`` hooks observe: what they return is ignored, and
-an error in one is recorded against its plugin without disturbing the run. No hook sits in the data path.
+What the class must do stands in :mod:`polyfold.interfaces`. The ``on_*`` hooks observe: what they return is ignored,
+and an error in one is recorded against its plugin without disturbing the run. No hook sits in the data path.
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ def _ideal_outline(episode: Episode) -> NDArray[np.float64] | None:
     return contour_of(fold_ideally(episode.initial_state, episode.garment.mesh, episode.ideal_lines).mask)
 
 
-def _frame(step: Step):  # noqa: ANN202 - view is imported late
+def _frame(step: Step):
     from polyfold import view
 
     title = step.subgoal.text if step.subgoal else f"fold {step.index + 1}"

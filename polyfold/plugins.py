@@ -99,7 +99,9 @@ def _load(found: Catalog, entry_point: EntryPoint) -> None:
 
 def _load_failure(error: Exception, plugin: Plugin) -> str:
     if isinstance(error, ModuleNotFoundError) and error.name:
-        return f"it could not be imported: the module {error.name!r} is missing; install it with: pip install {error.name}"
+        return (
+            f"it could not be imported: the module {error.name!r} is missing; install it with: pip install {error.name}"
+        )
     return (
         f"it could not be imported ({type(error).__name__}: {error}); "
         f"update it, uninstall it or set POLYFOLD_DISABLE={plugin.name}"
@@ -192,7 +194,9 @@ def find(kind: str, name: str) -> Component:
 
 def _check_kind(kind: str) -> None:
     if kind not in hookspecs.KINDS:
-        raise PluginError(f"there is no kind of component called {kind!r}; {_did_you_mean(kind, list(hookspecs.KINDS))}")
+        raise PluginError(
+            f"there is no kind of component called {kind!r}; {_did_you_mean(kind, list(hookspecs.KINDS))}"
+        )
 
 
 def _singular(kind: str) -> str:

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from polyfold.errors import LLMError
 from polyfold.interfaces import LLM, Message, Reply
 
 __all__ = ["Transcript"]
@@ -16,13 +17,15 @@ __all__ = ["Transcript"]
 class Transcript:
     """Passes requests to a language model and keeps what was said (:class:`polyfold.interfaces.Conversation`)."""
 
-    def __init__(self, llm: LLM) -> None:
+    def __init__(self, llm: LLM | None) -> None:
         self._llm = llm
         self.entries: list[dict[str, Any]] = []
         self.step: int | None = None
 
     def ask(self, role: str, messages: Sequence[Message], params: Mapping[str, Any] | None = None) -> Reply:
         """Ask the model and record the exchange, the error too if there is one."""
+        if self._llm is None:
+            raise LLMError("this episode has no language model; an agent that asks one must require the instruction")
         params = dict(params or {})
         attempt = 1 + sum(entry["role"] == role and entry["step"] == self.step for entry in self.entries)
         entry: dict[str, Any] = {

@@ -23,7 +23,9 @@ def register_agents(register):
     """Register the agents: the whole method, and the two floors every result is compared with."""
     register("polyfold", "polyfold.agent:PolyFoldAgent", "segmenter, grounding, planner and policy")
     register("noop", "polyfold_standard.floors:Noop", "does nothing")
-    register("random", "polyfold_standard.floors:Random", "random picks on the cloth, places mirrored across a random line")
+    register(
+        "random", "polyfold_standard.floors:Random", "random picks on the cloth, places mirrored across a random line"
+    )
 
 
 @hookimpl

@@ -1,7 +1,7 @@
 """The whole loop on unseen garments: ``python -m polyfold.benchmark.loop``.
 
-Four standard jobs on the evaluation garments (seeds 0 and up), from a sentence to the final picture, judged against the
-ideal along lines from ground-truth keypoints; the agents ``noop`` and ``random`` beside the method. The run directory can
+Four standard jobs on the evaluation garments (seeds 0 and up), from a sentence to the final picture, judged against
+the ideal along lines from ground-truth keypoints; the agents ``noop`` and ``random`` beside the method. The run directory can
 be killed and resumed; running again does only what is missing and prints the table.
 """
 
@@ -86,11 +86,7 @@ def _complete(run: RunDirectory, jobs: list[Job], agents: list[str], seeds: rang
 
     done = run.episodes()
     missing = [
-        (job, agent, seed)
-        for seed in seeds
-        for job in jobs
-        for agent in agents
-        if _key(job, agent, seed) not in done
+        (job, agent, seed) for seed in seeds for job in jobs for agent in agents if _key(job, agent, seed) not in done
     ]
     for job, agent, seed in tqdm(missing, desc="episodes", unit="episode", disable=not missing):
         run.append(_key(job, agent, seed), _episode(job, agent, seed, policy))

@@ -70,11 +70,11 @@ def _plugin_verbs() -> dict[str, tuple[str, str]]:
     return {name: (str(entries[0].target), entries[0].summary) for name, entries in sorted(found.items())}
 
 
-def _implementation(target: str):  # noqa: ANN202 - a module or a class, both with configure and run
+def _implementation(target: str):
     module, _, attribute = target.partition(":")
     found = import_module(module)
     return getattr(found, attribute) if attribute else found
 
 
-def _show_warning(message, category, filename, lineno, file=None, line=None) -> None:  # noqa: ANN001
+def _show_warning(message, category, filename, lineno, file=None, line=None) -> None:
     print(f"polyfold: warning: {message}", file=sys.stderr)

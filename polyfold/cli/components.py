@@ -1,4 +1,4 @@
-"""Options that choose components, shared by the verbs: ``--policy caso``, ``--llm litellm:openai/gpt-4o``, ``--set``."""
+"""Options that choose components, shared by the verbs: ``--policy caso``, ``--llm NAME:MODEL``, ``--set``."""
 
 from __future__ import annotations
 

@@ -48,13 +48,13 @@ def run(arguments: argparse.Namespace) -> int:
 class Printer:
     """Prints an episode as it happens."""
 
-    def on_episode_start(self, start) -> None:  # noqa: ANN001, D102
+    def on_episode_start(self, start) -> None:
         print(f"{start.garment.name}: {start.instruction}")
         for number, subgoal in enumerate(start.subgoals, 1):
             print(f"  {number}. {subgoal.text}")
         self._flush(f"  planned in {start.seconds:.2f} s")
 
-    def on_step(self, step) -> None:  # noqa: ANN001, D102
+    def on_step(self, step) -> None:
         line = step.fold_line
         where = (
             f"line ({line.start[0]:.0f}, {line.start[1]:.0f}) -> ({line.end[0]:.0f}, {line.end[1]:.0f})" if line else ""
@@ -67,7 +67,7 @@ class Printer:
         sys.stdout.flush()
 
 
-def _print_result(episode, out: Path | None) -> None:  # noqa: ANN001
+def _print_result(episode, out: Path | None) -> None:
     fidelity = episode.fidelity
     if fidelity is not None:
         print(

@@ -15,7 +15,9 @@ OUTLINES = {".json", ".jsonl"}
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
-    parser.add_argument("source", type=Path, help="photo on a plain background, black-and-white mask, or outline (JSON)")
+    parser.add_argument(
+        "source", type=Path, help="photo on a plain background, black-and-white mask, or outline (JSON)"
+    )
     parser.add_argument("--garment", required=True, metavar="KIND", help="kind of garment, for example tshirt")
     parser.add_argument("--out", type=Path, metavar="PNG", help="picture (default: SOURCE with -polygon.png)")
     parser.add_argument("--json", action="store_true", help="print the keypoints in the source's pixels as JSON")

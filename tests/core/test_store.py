@@ -51,7 +51,9 @@ def test_survives_sigkill_and_resumes_without_loss_or_repetition(tmp_path):
         deadline = time.monotonic() + 30
         size = (tmp_path / "episodes.jsonl").stat().st_size if (tmp_path / "episodes.jsonl").exists() else 0
         while time.monotonic() < deadline:
-            grown = (tmp_path / "episodes.jsonl").exists() and (tmp_path / "episodes.jsonl").stat().st_size > size + 9000
+            grown = (tmp_path / "episodes.jsonl").exists() and (
+                tmp_path / "episodes.jsonl"
+            ).stat().st_size > size + 9000
             if grown:
                 break
             time.sleep(0.005)

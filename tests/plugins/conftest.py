@@ -21,7 +21,8 @@ SOURCES = {
     "watching": HOOKIMPL + "def on_step(step):\n    raise RuntimeError('observer trouble')\n\n"
     "@hookimpl\ndef on_episode_end(episode):\n    print('WATCHED', episode.instruction)\n",
     "verbose": HOOKIMPL + "def register_commands(register):\n    register('greet', 'verbose:Greet', 'say hello')\n\n"
-    "class Greet:\n    @staticmethod\n    def configure(parser):\n        parser.add_argument('--name', default='you')\n\n"
+    "class Greet:\n    @staticmethod\n    def configure(parser):\n"
+    "        parser.add_argument('--name', default='you')\n\n"
     "    @staticmethod\n    def run(arguments):\n        print('hello', arguments.name)\n        return 0\n",
 }
 
