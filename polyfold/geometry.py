@@ -141,15 +141,25 @@ def contour_of(mask: NDArray[np.bool_]) -> Points:
 
 
 def fill_polygon(polygon: ArrayLike, height: int, width: int) -> NDArray[np.bool_]:
-    """Mask of the pixels whose centres lie in a closed polygon [px], shape (height, width)."""
-    import cv2
+    """Mask of the pixels whose centres lie inside a closed polygon [px], by the even-odd rule, shape (height, width).
 
-    # OpenCV also fills pixels that the boundary only touches; on a finer canvas that is a tenth of a pixel.
-    scale, shift = 5, 4
-    fine = np.zeros((height * scale, width * scale), np.uint8)
-    corners = (np.asarray(polygon, float) + 0.5) * scale - 0.5
-    cv2.fillPoly(fine, [np.round(corners * 2**shift).astype(np.int32)], 1, shift=shift)
-    return fine[scale // 2 :: scale, scale // 2 :: scale].astype(bool)
+    Exact where OpenCV's filling also takes every pixel that the edge touches, which would cost 1 % of IoU.
+    """
+    start = np.asarray(polygon, float)
+    end = np.roll(start, -1, axis=0)
+    swap = start[:, 1] > end[:, 1]
+    low, high = np.where(swap[:, None], end, start), np.where(swap[:, None], start, end)
+    first = np.clip(np.ceil(low[:, 1]), 0, height).astype(int)
+    last = np.clip(np.ceil(high[:, 1]), 0, height).astype(int)
+    count = last - first
+    edge = np.repeat(np.arange(len(start)), count)
+    row = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
+    share = (row - low[edge, 1]) / (high[edge, 1] - low[edge, 1])
+    crossing = low[edge, 0] + share * (high[edge, 0] - low[edge, 0])
+    column = np.clip(np.ceil(crossing), 0, width).astype(int)
+    toggles = np.zeros((height, width + 1), np.int32)
+    np.add.at(toggles, (row, column), 1)
+    return (np.cumsum(toggles, axis=1)[:, :width] % 2).astype(bool)
 
 
 def span_on_mask(

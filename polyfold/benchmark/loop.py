@@ -1,8 +1,8 @@
 """The whole loop on unseen garments: ``python -m polyfold.benchmark.loop``.
 
 Four standard jobs on the evaluation garments (seeds 0 and up), from a sentence to the final picture, judged against
-the ideal along lines from ground-truth keypoints; the agents ``noop`` and ``random`` beside the method. The run directory can
-be killed and resumed; running again does only what is missing and prints the table.
+the ideal along lines from ground-truth keypoints; the agents ``noop`` and ``random`` beside the method. The run
+directory can be killed and resumed; running again does only what is missing and prints the table.
 """
 
 from __future__ import annotations
