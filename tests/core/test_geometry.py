@@ -69,7 +69,7 @@ def test_contour_runs_along_the_true_edge(width, height, angle):
     beyond = np.maximum(np.abs(inside[:, 0]) - width / 2, np.abs(inside[:, 1]) - height / 2)
     assert np.abs(beyond).max() < 1.5
     # A side along the pixel rows can lie anywhere between two rows of pixel centres.
-    assert abs(beyond.mean()) < 0.55
+    assert abs(beyond.mean()) < 0.65
 
 
 def test_empty_mask_has_no_contour():
