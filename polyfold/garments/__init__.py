@@ -2,6 +2,7 @@
 
 from polyfold.garments.garment import Garment, Mesh
 from polyfold.garments.naming import name_by_pose
+from polyfold.garments.obj import load_obj
 from polyfold.garments.outline import Outline, curved_outline
 from polyfold.garments.outline_files import load_mask, load_outline, load_picture, outline_from_photo
 from polyfold.garments.panels import mesh_panels
@@ -17,6 +18,7 @@ __all__ = [
     "curved_outline",
     "find_cloth",
     "load_mask",
+    "load_obj",
     "load_outline",
     "load_picture",
     "mesh_panels",

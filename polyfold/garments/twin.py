@@ -15,7 +15,7 @@ from polyfold.garments.panels import mesh_panels
 from polyfold.garments.pattern import Pattern
 from polyfold.geometry import polygon_area
 
-__all__ = ["repair_outline", "twin_from_outline"]
+__all__ = ["pattern_of", "repair_outline", "twin_from_outline"]
 
 Floats = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ def twin_from_outline(
     Raises:
         GarmentError: if keypoints are missing or do not go round the outline in order, or the outline is unusable.
     """
-    pattern = pattern or _pattern_of(kind)
+    pattern = pattern or pattern_of(kind)
     size = pattern.size if size_m is None else float(size_m)
     if not SMALLEST <= size <= LARGEST:
         raise GarmentError(f"a garment of {size} m is not plausible; give its longest side in metres")
@@ -88,7 +88,7 @@ def _clockwise(ring: Floats) -> Floats:
     return ring[::-1] if polygon_area(ring) > 0 else ring
 
 
-def _pattern_of(kind: str) -> Pattern:
+def pattern_of(kind: str) -> Pattern:
     """The pattern that the kind's class carries. Kinds are plugins, hence the late import."""
     from polyfold import plugins
 
