@@ -63,6 +63,19 @@ def _stretch(x, mobility, edges, rest_lengths):
 
 
 @njit(cache=True, fastmath=True)
+def _hold_back(x, mobility, particles, anchors, lengths):
+    for t in range(particles.shape[0]):
+        i, a = particles[t], anchors[t]
+        dx, dy, dz = x[i, 0] - x[a, 0], x[i, 1] - x[a, 1], x[i, 2] - x[a, 2]
+        d2 = dx * dx + dy * dy + dz * dz
+        if d2 > lengths[t] * lengths[t] and mobility[i] > np.float32(0.0):
+            s = np.float32(1.0) - lengths[t] / np.sqrt(d2)
+            x[i, 0] -= s * dx
+            x[i, 1] -= s * dy
+            x[i, 2] -= s * dz
+
+
+@njit(cache=True, fastmath=True)
 def _table(x, previous, mobility, floor, friction):
     for i in range(x.shape[0]):
         push = floor - x[i, 2]
@@ -121,7 +134,7 @@ def _farthest(x, reference):
 def advance(
     x, v, previous, listed, mobility, normals, edges, rest_lengths, hinges, hinge_weights, corners, use,
     excluded_start, excluded, start, pj, side, pair_normal, old_start, old_j, old_side, clock,
-    grasped, offsets, arm, directions, path, angles, first, last, settings, damping, rest_speed,
+    grasped, offsets, arm, directions, path, angles, tied, anchors, lengths, first, last, settings, damping, rest_speed,
 ):  # fmt: skip
     """Run substeps ``first`` to ``last`` in place; stop early once slow (``rest_speed`` > 0) for ten substeps.
 
@@ -142,6 +155,7 @@ def advance(
         _predict(x, v, previous, mobility, dt, damping, fastest)
         if grasped.shape[0] > 0:
             _carry(x, grasped, offsets, arm, directions, path, angles, k)
+            _hold_back(x, mobility, tied, anchors, lengths)
         _stretch(x, mobility, edges, rest_lengths)
         if clock[0] < 0 or _farthest(x, listed) > limit:
             if not _is_finite(x):

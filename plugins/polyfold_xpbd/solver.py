@@ -14,6 +14,7 @@ from polyfold_xpbd.contact import vertex_normals
 from polyfold_xpbd.dynamics import DIVERGED, SETTLED, advance
 from polyfold_xpbd.grasp import plan_motion, take_hold
 from polyfold_xpbd.model import build_model
+from polyfold_xpbd.tethers import TetherMap
 
 __all__ = ["Solver"]
 
@@ -44,6 +45,7 @@ class Solver:
     def __init__(self, mesh: Mesh, flat: NDArray[np.float64], config: Any) -> None:
         count = len(flat)
         self._model = build_model(mesh, config.bending_length)
+        self._tethers = TetherMap(mesh)
         self._thickness = config.thickness
         edge_length = self._model.edge_length
         self.dt = time_step(edge_length)
@@ -117,6 +119,7 @@ class Solver:
         motion = plan_motion(grasp, self.dt)
         self._mobility[grasp.particles] = 0.0
         held = (grasp.particles, grasp.offsets, grasp.arms, motion.directions, motion.path, motion.angles)
+        held += self._tethers.tie(grasp.particles, grasp.arms, grasp.offsets)
         alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval)
         self._mobility[:] = 1.0
         return alive and self.settle(LONGEST_SETTLING, on_frame, interval)
@@ -176,4 +179,7 @@ _EMPTY = (
     np.zeros((1, 2), np.float32),
     np.zeros((1, 1, 3), np.float32),
     np.zeros(1, np.float32),
+    np.zeros(0, np.uint32),
+    np.zeros(0, np.uint32),
+    np.zeros(0, np.float32),
 )
