@@ -5,9 +5,9 @@ colour-blind readers and every stroke has a light edge, so that it shows on any 
 """
 
 from polyfold.view.animation import gif
-from polyfold.view.filmstrip import Frame, filmstrip
-from polyfold.view.overlay import overlay, value_map
-from polyfold.view.picture import grounding_picture, polygon_picture
+from polyfold.view.filmstrips import Frame, filmstrip
+from polyfold.view.overlays import overlay, value_map
+from polyfold.view.polygons import grounding_picture, polygon_picture
 from polyfold.view.saving import png, save
 from polyfold.view.sheets import Card, garment_sheet, score_sheet
 from polyfold.view.shown import animate, show

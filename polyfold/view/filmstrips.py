@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from polyfold.types import Action, FoldLine, Scene
 from polyfold.view.canvas import Page, line_height, text_width, wrapped
-from polyfold.view.overlay import overlay
+from polyfold.view.overlays import overlay
 from polyfold.view.saving import save
 from polyfold.view.style import ARMS, FAINT, FOLD_LINE, GOAL, INK, RULE, Colour
 
