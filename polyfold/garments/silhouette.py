@@ -16,8 +16,20 @@ Mask = NDArray[np.bool_]
 INLIER = 60.0
 """Border pixels further than this [RGB units] from the border's median colour are no background."""
 
-NEAR_COLOURS = 120.0
+NEAR_COLOURS = 200.0
 """Beyond this distance [RGB units] everything counts as equally unlike the background when a threshold is sought."""
+
+
+DOUBTFUL = 0.3
+"""Largest share, relative to the cloth, of pixels that are neither clearly cloth nor clearly background."""
+
+UNDIVIDED = 0.6
+"""Smallest share of all cloth-like pixels that must belong to the largest blob."""
+
+TOO_ALIKE = (
+    "no cloth stands out clearly from the background: their colours are too alike in places, or there are several "
+    "things; use a plain background of another colour, or give a mask"
+)
 
 
 def find_cloth(
@@ -37,15 +49,16 @@ def find_cloth(
         GarmentError: if nothing stands out clearly, or what does reaches all four borders.
     """
     distance, noise = colour_distance(rgb)
-    if threshold is None:
-        threshold = _separating_threshold(distance, noise)
-    cleaned = _without_specks(distance > threshold)
+    limit = _separating_threshold(distance, noise) if threshold is None else threshold
+    cleaned = _without_specks(distance > limit)
     mask, area = _largest_blob(cleaned)
     if area < smallest * mask.size:
         raise GarmentError(
             f"no cloth stands out from the background (largest blob: {area} pixels); "
             "use a plain background of another colour, or give a mask"
         )
+    if threshold is None:
+        _check_clear(distance, limit, area, int(cleaned.sum()))
     if all(edge.mean() > 0.5 for edge in (mask[0], mask[-1], mask[:, 0], mask[:, -1])):
         raise GarmentError(
             "what stands out touches all four borders of the picture; show the whole cloth with background around it"
@@ -91,11 +104,15 @@ def _separating_threshold(distance: NDArray[np.float32], noise: float) -> float:
     threshold = otsu * NEAR_COLOURS / 255.0
     cloth, background = distance[distance > threshold], distance[distance <= threshold]
     if not len(cloth) or float(np.median(cloth)) - float(np.median(background)) < max(15.0, 4.0 * noise):
-        raise GarmentError(
-            "no cloth stands out from the background: their colours are too alike; "
-            "use a plain background of another colour, or give a mask"
-        )
+        raise GarmentError(TOO_ALIKE)
     return max(threshold, 3.0 * noise)
+
+
+def _check_clear(distance: NDArray[np.float32], threshold: float, area: int, total: int) -> None:
+    """Refuse a picture whose cloth is a matter of where exactly the threshold lies, or comes in several pieces."""
+    doubtful = int(((distance > 0.7 * threshold) & (distance < 1.3 * threshold)).sum())
+    if doubtful > DOUBTFUL * area or area < UNDIVIDED * total:
+        raise GarmentError(TOO_ALIKE)
 
 
 def _without_specks(mask: Mask) -> Mask:
