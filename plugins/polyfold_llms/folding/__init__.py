@@ -1,0 +1,1 @@
+"""The grammar and geometry behind the ``rules`` backend: words to folds, and folds to fold lines."""

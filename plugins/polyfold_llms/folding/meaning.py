@@ -1,0 +1,173 @@
+"""What an instruction asks for: an ordered list of folds, or the reason why it can't be done."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from polyfold_llms.folding.clauses import folds_of_frame, parts_of
+from polyfold_llms.folding.folds import Fold
+from polyfold_llms.folding.frames import Frame, Request, frames_of
+from polyfold_llms.folding.goals import fold_for_goal
+from polyfold_llms.folding.parts import Garment, NotUnderstoodError
+from polyfold_llms.folding.tokens import Sentence, read
+
+__all__ = ["Meaning", "understand"]
+
+MAX_FOLDS = 8
+NAMED = {"tshirt": "a t-shirt", "pants": "pants", "square": "a square cloth", "rectangle": "a rectangular cloth"}
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """The folds asked for and what was decided on the way."""
+
+    folds: tuple[Fold, ...]
+    notes: tuple[str, ...]
+
+
+def understand(text: str, garment: Garment) -> Meaning:
+    """Turn an instruction for this garment into folds.
+
+    Raises:
+        NotUnderstoodError: with the reason.
+    """
+    sentence = read(text)
+    request = frames_of(sentence.tokens)
+    _check_garment(request, garment)
+    _check_words(request, sentence)
+    for wrong, right in sentence.corrections:
+        garment.note(f"I read “{wrong}” as “{right}”.")
+    barred = _barred(request, garment)
+    start = len(garment.folds)
+    frames = _merged([frame for frame in request.frames if not frame.negated])
+    if not frames:
+        raise NotUnderstoodError("it names nothing that should be folded")
+    _fold_frames(frames, garment, request.steps)
+    folds = _without(garment.folds[start:], barred, garment)
+    _check_count(folds, request.steps)
+    return Meaning(tuple(folds), tuple(garment.notes))
+
+
+def _check_garment(request: Request, garment: Garment) -> None:
+    for named in request.garments:
+        if named == "other":
+            raise NotUnderstoodError(f"it asks for something else than the {garment.spoken} on the table")
+        fits = {
+            "tshirt": garment.family == "tshirt", "pants": garment.family == "pants",
+            "cloth": garment.family in ("quad", "other"), "square": garment.kind == "square",
+            "rectangle": garment.family == "quad" and garment.kind != "square",
+        }.get(named, True)  # fmt: skip
+        if not fits:
+            raise NotUnderstoodError(
+                f"it asks for {NAMED.get(named, 'a plain cloth')}, but a {garment.spoken} lies on the table"
+            )
+
+
+def _check_words(request: Request, sentence: Sentence) -> None:
+    if not sentence.tokens or not request.frames:
+        raise NotUnderstoodError("it holds no folding instruction that I understand")
+    for frame in request.frames:
+        if frame.negated and (frame.refused or frame.unknown) and not frame.specific:
+            continue
+        if frame.refused:
+            raise NotUnderstoodError(f"“{frame.refused[0]}” is nothing I can do; I only fold parts over onto the cloth")
+        if frame.unknown:
+            raise NotUnderstoodError(f"I do not understand “{frame.unknown[0]}”")
+
+
+def _barred(request: Request, garment: Garment) -> set[tuple[str, str]]:
+    """Parts that must stay where they are."""
+    barred: set[tuple[str, str]] = set()
+    last_noun = None
+    for frame in request.frames:
+        phrases = list(frame.excluded)
+        if frame.negated:
+            if frame.refused or frame.unknown:
+                continue
+            if not frame.specific:
+                raise NotUnderstoodError("it says not to fold; nothing is left to do")
+            phrases += frame.moving
+        for phrase in phrases:
+            context = last_noun if phrase.noun is None else phrase
+            probe = Garment(garment.kind, garment.family, list(garment.folds))
+            found = parts_of(phrase, probe, "moving", context)
+            if not found:
+                raise NotUnderstoodError(f"it is unclear what to leave out: “{phrase.text}”")
+            barred |= {(part.what, part.which) for part in found}
+        last_noun = next((p for p in frame.moving if p.noun), last_noun)
+    return barred
+
+
+def _merged(frames: list[Frame]) -> list[Frame]:
+    """Join clauses that make sense only together, such as *take the hem* and *fold it up*."""
+    merged: list[Frame] = []
+    for frame in frames:
+        previous = merged[-1] if merged else None
+        if previous is not None and _continues(previous, frame):
+            merged[-1] = _joined(previous, frame)
+        else:
+            merged.append(frame)
+    return merged
+
+
+def _continues(previous: Frame, frame: Frame) -> bool:
+    pronoun = bool(frame.moving) and all(not p.names_part and not p.garments for p in frame.moving)
+    if previous.specific and not previous.placed and not previous.fractions and not previous.goals:
+        return not frame.specific and (pronoun or not frame.moving) and frame.placed and not frame.fractions
+    return False
+
+
+def _joined(first: Frame, second: Frame) -> Frame:
+    return replace(
+        second, moving=first.moving, verbs=first.verbs + second.verbs, leads=first.leads or second.leads,
+        excluded=first.excluded + second.excluded,
+    )  # fmt: skip
+
+
+def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> None:
+    explicit = any(_explicit(frame) for frame in frames)
+    previous: Frame | None = None
+    for frame in frames:
+        if not _explicit(frame) and explicit and not frame.goals and not frame.fractions:
+            if previous is None or not (frame.same or frame.again):
+                continue
+        if frame.goals and explicit and not _explicit(frame) and frame.goals[0] in ("tidy", "store"):
+            continue
+        wanted = steps if not explicit else None
+        for fold in folds_of_frame(frame, garment, previous, wanted):
+            garment.folds.append(fold)
+            if len(garment.folds) > MAX_FOLDS + 4:
+                raise NotUnderstoodError("that is more folds than a piece of cloth can take")
+        if not (frame.same or frame.elliptical) or previous is None:
+            previous = frame
+    if not garment.folds:
+        for fold in fold_for_goal(garment, "default", steps):
+            garment.folds.append(fold)
+
+
+def _explicit(frame: Frame) -> bool:
+    """Whether the clause says itself what is folded, so that nothing needs to be made up."""
+    return bool(frame.specific or frame.fractions or frame.targets or frame.manners or frame.axes or frame.directions)
+
+
+def _without(folds: list[Fold], barred: set[tuple[str, str]], garment: Garment) -> list[Fold]:
+    kept = [fold for fold in folds if not barred & _touched(fold)]
+    if len(kept) < len(folds) and not kept:
+        raise NotUnderstoodError("what it asks to fold is also what it says to leave; nothing is left to do")
+    if len(kept) < len(folds):
+        garment.note("Parts that the instruction excludes stay where they are.")
+    return kept
+
+
+def _touched(fold: Fold) -> set[tuple[str, str]]:
+    what = {"half": "edge", "middle": "edge"}.get(fold.action, fold.action)
+    return {(what, fold.part)}
+
+
+def _check_count(folds: list[Fold], steps: int | None) -> None:
+    if not folds:
+        raise NotUnderstoodError("it names no fold that I understand")
+    if len(folds) > MAX_FOLDS:
+        raise NotUnderstoodError(f"{len(folds)} folds are more than a piece of cloth can take")
+    if steps is not None and steps != len(folds):
+        raise NotUnderstoodError(f"I see no way to do that in {steps} steps; it takes {len(folds)}")

@@ -1,0 +1,237 @@
+"""From a sentence to tagged tokens: normalised words, misspellings within one edit, longest known phrases."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass
+from functools import cache
+
+from polyfold_llms.folding.lexicon import fillers, phrases
+
+__all__ = ["Sentence", "Token", "read"]
+
+NUMBERS = {
+    "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9,
+    "ten": 10, "dozen": 12, "twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "hundred": 100, "thousand": 1000,
+}  # fmt: skip
+IRREGULAR = {
+    "brought": "bring", "took": "take", "taken": "take", "laid": "lay", "swung": "swing", "sent": "send",
+    "bent": "bend", "met": "meet", "kept": "keep", "left": "left", "made": "make", "drawn": "draw", "slid": "slide",
+    "went": "go", "gone": "go", "came": "come", "goes": "go", "held": "hold", "lay": "lay", "lies": "lie",
+    "lying": "lie", "sat": "sit", "hung": "hang", "worn": "wear", "tore": "tear", "torn": "tear", "spun": "spin",
+    "shook": "shake", "threw": "throw", "thrown": "throw", "undid": "undo", "undone": "undo", "leaves": "leave",
+    "tidied": "tidy", "tidies": "tidy", "halved": "halve", "halves": "half", "drew": "draw", "hid": "hide",
+    "dries": "dry", "dried": "dry", "ran": "run", "shrunk": "shrink", "ft": "foot", "centres": "centre",
+    "centers": "centre", "center": "centre", "middles": "middle", "organised": "organise",
+}  # fmt: skip
+COUNTED = re.compile(
+    r"\b(?:in|with|using|within|by|takes?)\s+(?:just |only |exactly )?(?:a total of )?(\w+)\s+"
+    r"(?:\w+ )?(?:steps?|moves?|folds|stages?|foldings?|movements?|motions?|operations?|goes|actions?)\b"
+)
+TIMES = re.compile(r"\b(\d+|[a-z]+)\s+(?:more |separate |whole )?times\b(?! smaller)")
+
+
+@dataclass(frozen=True)
+class Token:
+    """A known phrase: its category and value in the lexicon, the words it stands for and their grammatical form."""
+
+    category: str
+    value: str
+    text: str
+    plural: bool = False
+    form: str = "base"
+
+    def is_(self, category: str, *values: str) -> bool:
+        """Whether it has this category and, if any are given, one of these values."""
+        return self.category == category and (not values or self.value in values)
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """A tagged instruction; ``corrections`` are misspellings read as known words."""
+
+    tokens: tuple[Token, ...]
+    corrections: tuple[tuple[str, str], ...]
+
+
+def read(text: str) -> Sentence:
+    """Tag an instruction."""
+    plain = _plain(text)
+    plain = COUNTED.sub(_count("stepcount"), plain)
+    plain = TIMES.sub(_count("timescount"), plain)
+    words = re.findall(r"[a-z0-9']+|[.,;:!?()]", plain)
+    corrections: list[tuple[str, str]] = []
+    fixed = [_spell(word, corrections) for word in words]
+    return Sentence(tuple(_tag(fixed)), tuple(corrections))
+
+
+def _plain(text: str) -> str:
+    text = unicodedata.normalize("NFKD", text.lower()).replace("\u2019", "'").replace("\u2018", "'")
+    text = (
+        text.replace("\u2014", ", ")
+        .replace("\u2013", ", ")
+        .replace(" - ", ", ")
+        .replace("&", " and ")
+        .replace("->", " to ")
+    )
+    text = re.sub(r"can(?:no|')t\b", "can not", text)
+    text = re.sub(r"n't\b", " not", text).replace("dont ", "do not ")
+    text = re.sub(r"'(?:s|ve|ll|d|re|m)\b", "", text).replace("s' ", "s ")
+    text = re.sub(r"\b(?:one|1)\s*/\s*4\b|\b1/4\b", " quarter ", text)
+    text = re.sub(r"\b1/3\b", " third ", text)
+    text = re.sub(r"\b1/2\b", " half ", text)
+    text = re.sub(r"\b(\d+)(?:x)\b", r"\1 times", text)
+    text = re.sub(r"\bt-?shirt", "tshirt", text)
+    return text.replace("-", " ").replace("/", " ").replace('"', " ").replace("centre's", "centre")
+
+
+def _count(name: str):
+    def replace(match: re.Match[str]) -> str:
+        number = _number(match.group(1))
+        return match.group(0) if number is None else f" {name}{number} "
+
+    return replace
+
+
+def _number(word: str) -> int | None:
+    return int(word) if word.isdigit() and len(word) < 7 else NUMBERS.get(word)
+
+
+def _variants(word: str) -> tuple[tuple[str, str], ...]:
+    """Possible dictionary forms of a word with its grammatical form."""
+    found = [(word, "base")]
+    if word in IRREGULAR:
+        found.append((IRREGULAR[word], "plural" if word.endswith("s") else "past"))
+    for ending, added, form in (
+        ("s", "", "plural"), ("es", "", "plural"), ("ies", "y", "plural"), ("ing", "", "ing"), ("ing", "e", "ing"),
+        ("ed", "", "past"), ("d", "", "past"), ("ied", "y", "past"), ("ves", "f", "plural"),
+    ):  # fmt: skip
+        if word.endswith(ending) and len(word) - len(ending) >= 2:
+            stem = word[: -len(ending)]
+            found.append((stem + added, form))
+            if not added and len(stem) > 3 and stem[-1] == stem[-2]:
+                found.append((stem[:-1], form))
+    return tuple(found)
+
+
+@cache
+def _vocabulary() -> frozenset[str]:
+    words = {word for entries in phrases().values() for phrase, _, _ in entries for word in phrase}
+    return frozenset(words | set(fillers()) | set(NUMBERS) | set(IRREGULAR))
+
+
+def _known(word: str) -> bool:
+    return any(form in _vocabulary() for form, _ in _variants(word))
+
+
+def _spell(word: str, corrections: list[tuple[str, str]]) -> str:
+    """The word itself if known, else the one known word within a single edit; short words are left alone."""
+    if len(word) < 4 or not word.isalpha() or _known(word) or word.startswith(("stepcount", "timescount")):
+        return word
+    shortest = 5 if len(word) > 4 else 4
+    near = sorted({k for k in _vocabulary() if len(k) >= shortest and _one_edit(word, k, len(word) == 4)})
+    singular = word[:-1] if word.endswith("s") else ""
+    if not near and len(singular) >= 5:
+        near = sorted({k + "s" for k in _vocabulary() if len(k) >= 5 and _one_edit(singular, k, False)})
+    if len(near) != 1:
+        return word
+    corrections.append((word, near[0]))
+    return near[0]
+
+
+def _one_edit(a: str, b: str, swaps_only: bool) -> bool:
+    """Whether one insertion, deletion, substitution or swap of neighbours turns ``a`` into ``b``."""
+    if abs(len(a) - len(b)) > 1:
+        return False
+    start = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
+    x, y = a[start:], b[start:]
+    if len(x) > 1 and len(y) > 1 and x[0] == y[1] and x[1] == y[0] and x[2:] == y[2:]:
+        return True
+    return not swaps_only and (x[1:] == y[1:] or x[1:] == y or x == y[1:])
+
+
+def _tag(words: list[str]) -> list[Token]:
+    tokens: list[Token] = []
+    at = 0
+    while at < len(words):
+        token, used = _match(words, at)
+        if token is not None:
+            tokens.append(token)
+        at += used
+    return tokens
+
+
+def _match(words: list[str], at: int) -> tuple[Token | None, int]:
+    word = words[at]
+    for name, category in (("stepcount", "steps"), ("timescount", "times")):
+        if word.startswith(name):
+            return Token(category, word.removeprefix(name), word), 1
+    if word in ".;:!?()":
+        return Token("stop", word, word), 1
+    if word == ",":
+        return Token("join", "comma", word), 1
+    best: tuple[int, int, Token] | None = None
+    for variant, form in _variants(word):
+        for phrase, category, value in phrases().get(variant, ()):
+            last_form = _fits(words, at, phrase)
+            if last_form is None or (len(phrase) == 1 and not _allowed(category, form)):
+                continue
+            plural = last_form == "plural" and category in ("noun", "garment")
+            spoken = " ".join(words[at : at + len(phrase)])
+            token = Token(category, value, spoken, plural, form if category == "verb" else "base")
+            rank = (len(phrase), 1 if form == "base" else 0)
+            if not _cut_off(token, words, at + len(phrase)) and (best is None or rank > best[:2]):
+                best = (*rank, token)
+    if best is not None:
+        return best[2], best[0]
+    if _number(word) is not None:
+        return Token("number", str(_number(word)), word), 1
+    if any(variant in fillers() for variant, _ in _variants(word)) or word.endswith("ly"):
+        return None, 1
+    return Token("unknown", word, word), 1
+
+
+FILLER_WORDS = frozenset(fillers())
+
+
+def _allowed(category: str, form: str) -> bool:
+    """Only nouns have plurals and only verbs have -ing and -ed."""
+    if form == "base":
+        return True
+    return category == "verb" or (form == "plural" and category in ("noun", "garment", "pronoun"))
+
+
+def _fits(words: list[str], at: int, phrase: tuple[str, ...]) -> str | None:
+    """The grammatical form of the last word if the phrase stands at this place."""
+    if at + len(phrase) > len(words):
+        return None
+    form = "base"
+    for word, wanted in zip(words[at:], phrase, strict=False):
+        forms = {variant: kind for variant, kind in reversed(_variants(word))}
+        if wanted not in forms:
+            return None
+        form = forms[wanted]
+    return form
+
+
+def _cut_off(token: Token, words: list[str], after: int) -> bool:
+    """``to the right`` is a direction, but not in ``to the right edge`` or ``to the left and right``."""
+    if after >= len(words):
+        return False
+    following = {variant for variant, _ in _variants(words[after])}
+    if token.category in ("dir", "manner") and token.text.split()[-1] in ("left", "right", "top", "bottom"):
+        if following & PART_WORDS or "hand" in following:
+            return True
+    if token.category in ("side",) and token.value in ("long", "short") and following & {"sleeved", "sleeve"}:
+        return True
+    return token.category == "frac" and bool(following & {"step", "fold", "move", "time"})
+
+
+PART_WORDS = frozenset(
+    {
+        "corner", "edge", "side", "sleeve", "leg", "half", "third", "quarter", "border", "shoulder", "hem", "one",
+        "part", "bottom", "top", "upper", "lower", "hand", "end", "arm", "cuff", "flap", "point", "left", "right",
+        "portion", "margin", "panel", "waist", "vertex",
+    }
+)  # fmt: skip

@@ -1,0 +1,90 @@
+"""Reading a language model's reply: reasoning, then one last fenced JSON object. Nothing in it is ever executed."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from polyfold.errors import PlanError, RefusedError
+from polyfold.interfaces import Reply
+from polyfold.types import FoldLine
+
+__all__ = ["answer_object", "fold_line_in", "subgoals_in"]
+
+_FENCE = re.compile(r"```[ \t]*(?:json|JSON)?[ \t]*\n(.*?)```", re.DOTALL)
+MAX_REPLY = 100_000
+
+
+def answer_object(reply: Reply) -> Mapping[str, Any]:
+    """The reply's last JSON object.
+
+    Raises:
+        RefusedError: if the model refuses, with its reason.
+        PlanError: if there is none or it is not plain JSON; the message tells the model what to do.
+    """
+    if reply.refusal or reply.finish == "refusal":
+        raise RefusedError(
+            f"the language model refused: {reply.refusal or 'no reason given'}; rephrase the instruction"
+        )
+    if reply.finish == "length":
+        raise PlanError("the answer was cut off before its end; answer more briefly")
+    text = reply.text
+    if len(text) > MAX_REPLY:
+        raise PlanError("the answer is far too long; answer in a few sentences and one JSON object")
+    content = _decoded(text)
+    if not isinstance(content, dict):
+        raise PlanError("the JSON at the end must be an object; end with one fenced ```json object")
+    if "refused" in content:
+        raise RefusedError(f"{str(content['refused'])[:500] or 'no reason given'}")
+    return content
+
+
+def _decoded(text: str) -> Any:
+    blocks = _FENCE.findall(text)
+    bare = text.strip()
+    if not blocks and bare.startswith("{") and bare.endswith("}"):
+        blocks = [bare]
+    if not blocks:
+        raise PlanError("the answer has no fenced ```json block; end with exactly one")
+    try:
+        return json.loads(blocks[-1], parse_constant=_no_constants)
+    except (ValueError, RecursionError) as error:
+        raise PlanError(f"the last ```json block is not valid JSON ({error}); correct it") from error
+
+
+def _no_constants(name: str) -> float:
+    raise ValueError(f"{name} is no number")
+
+
+def subgoals_in(content: Mapping[str, Any], at_most: int) -> list[str]:
+    """The list of subgoal texts. Raises PlanError if it has another form."""
+    found = content.get("subgoals")
+    if not isinstance(found, list) or not all(isinstance(text, str) and text.strip() for text in found):
+        raise PlanError('the JSON must have the form {"subgoals": ["fold the ...", ...]}; give a list of sentences')
+    if not 1 <= len(found) <= at_most:
+        raise PlanError(f"{len(found)} subgoals were given; give between 1 and {at_most}, or refuse with a reason")
+    return [" ".join(text.split())[:300] for text in found]
+
+
+def fold_line_in(content: Mapping[str, Any]) -> FoldLine:
+    """The fold line [px]. Raises PlanError if it has another form or a coordinate is not finite."""
+    line = content.get("fold_line")
+    form = '{"fold_line": {"start": {"x": 0, "y": 0}, "end": {"x": 0, "y": 0}}}'
+    if not isinstance(line, Mapping):
+        raise PlanError(f"the JSON must have the form {form}")
+    points = []
+    for end in ("start", "end"):
+        point = line.get(end)
+        if not isinstance(point, Mapping):
+            raise PlanError(f"the JSON must have the form {form}; {end!r} is missing")
+        points.append(tuple(_coordinate(point.get(axis), end, axis) for axis in ("x", "y")))
+    return FoldLine(points[0], points[1])
+
+
+def _coordinate(value: Any, end: str, axis: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) > 1e6 or not math.isfinite(value):
+        raise PlanError(f"{end}.{axis} must be a finite number of pixels, got {str(value)[:40]}; give plain numbers")
+    return float(value)
