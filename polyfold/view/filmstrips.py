@@ -97,7 +97,7 @@ def _step_panel(number: int, frame: Frame) -> _Panel:
 
 def _result_panel(rgb: Image, title: str, caption: str, ideal_outline: ArrayLike | None) -> _Panel:
     picture = overlay(rgb, outline=ideal_outline, zoom=PANEL / max(rgb.shape[:2]))
-    return _Panel(picture, wrapped(title, TITLE, PANEL, bold=True), wrapped(caption, CAPTION, PANEL, most=2))
+    return _Panel(picture, wrapped(title, TITLE, PANEL, bold=True), wrapped(caption, CAPTION, PANEL, most=6))
 
 
 def _lay_out(rows: list[list[_Panel]], heading: str, legend: list[tuple[str, str, Colour]]) -> Image:
@@ -118,7 +118,12 @@ def _lay_out(rows: list[list[_Panel]], heading: str, legend: list[tuple[str, str
 
 
 def _row_height(row: list[_Panel]) -> int:
-    return _titles_height(row) + PANEL + 8 + max(len(panel.caption) for panel in row) * line_height(CAPTION)
+    captions = max(len(panel.caption) for panel in row) * line_height(CAPTION)
+    return _titles_height(row) + _pictures_height(row) + 8 + captions
+
+
+def _pictures_height(row: list[_Panel]) -> int:
+    return max(panel.picture.shape[0] for panel in row)
 
 
 def _titles_height(row: list[_Panel]) -> int:
@@ -127,13 +132,14 @@ def _titles_height(row: list[_Panel]) -> int:
 
 def _lay_row(page: Page, row: list[_Panel], y: int) -> None:
     below_titles = y + _titles_height(row)
+    below_pictures = below_titles + _pictures_height(row)
     for column, panel in enumerate(row):
         x = MARGIN + column * (PANEL + GAP)
         page.lines(panel.title, x, below_titles - 8 - len(panel.title) * line_height(TITLE), TITLE, INK, bold=True)
         page.picture(panel.picture, x, below_titles, frame=RULE)
-        page.lines(panel.caption, x, below_titles + PANEL + 8, CAPTION, FAINT)
+        page.lines(panel.caption, x, below_pictures + 8, CAPTION, FAINT)
         if column:
-            page.text("›", x - GAP / 2, below_titles + PANEL / 2, 30, FAINT, anchor="mm")
+            page.text("›", x - GAP / 2, (below_titles + below_pictures) / 2, 30, FAINT, anchor="mm")
 
 
 def _legend(frames: Sequence[Frame], with_ideal: bool) -> list[tuple[str, str, Colour]]:

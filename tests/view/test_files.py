@@ -47,6 +47,11 @@ def test_long_texts_are_wrapped_and_cut_but_never_widen_the_page(rgb):
     assert (long[:, -20:] == 255).all()
 
 
+def test_wide_pictures_leave_no_gap_below():
+    square, wide = np.zeros((200, 200, 3), np.uint8), np.zeros((100, 200, 3), np.uint8)
+    assert view.filmstrip([], square).shape[0] - view.filmstrip([], wide).shape[0] == pytest.approx(165, abs=2)
+
+
 def test_png_bytes_can_be_read(rgb):
     assert (np.asarray(Image.open(BytesIO(view.png(rgb)))) == rgb).all()
 
