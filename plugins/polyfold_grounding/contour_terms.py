@@ -7,6 +7,9 @@ from numba import njit
 
 __all__ = ["contour_cost", "contour_normal_equations", "field_at"]
 
+COVERED = 0.2
+"""Weight of a distance inside the cloth for edges that other cloth may cover."""
+
 
 @njit(cache=True)
 def field_at(field, x, y):
@@ -53,7 +56,7 @@ def _closest(vertices, x, y):
 
 
 @njit(cache=True)
-def contour_cost(vertices, samples, field, margin, delta, count):
+def contour_cost(vertices, covered, samples, field, margin, delta, count):
     """Mean pseudo-Huber cost [px²] and mean distance [px], each half model to cloth and half cloth to model."""
     lengths = _edge_lengths(vertices)
     spacing = lengths.sum() / count
@@ -69,6 +72,8 @@ def contour_cost(vertices, samples, field, margin, delta, count):
         x = vertices[e, 0] + share * (vertices[f, 0] - vertices[e, 0])
         y = vertices[e, 1] + share * (vertices[f, 1] - vertices[e, 1])
         r, _, _ = field_at(field, x + margin, y + margin)
+        if covered[e] and r < 0:
+            r *= COVERED
         cost += delta * delta * (np.sqrt(1 + (r / delta) ** 2) - 1) / count
         chamfer += abs(r) / count
         position += spacing
@@ -95,7 +100,7 @@ def _add(gradient, hessian, e, f, share, nx, ny, r, weight):
 
 
 @njit(cache=True)
-def contour_normal_equations(vertices, samples, field, margin, delta, count):
+def contour_normal_equations(vertices, covered, samples, field, margin, delta, count):
     """Cost as :func:`contour_cost`, with its gradient, shape (2V,), and Gauss-Newton Hessian, shape (2V, 2V)."""
     lengths = _edge_lengths(vertices)
     size = 2 * len(vertices)
@@ -113,6 +118,8 @@ def contour_normal_equations(vertices, samples, field, margin, delta, count):
         x = vertices[e, 0] + share * (vertices[f, 0] - vertices[e, 0])
         y = vertices[e, 1] + share * (vertices[f, 1] - vertices[e, 1])
         r, gx, gy = field_at(field, x + margin, y + margin)
+        if covered[e] and r < 0:
+            r, gx, gy = COVERED * r, COVERED * gx, COVERED * gy
         root = np.sqrt(1 + (r / delta) ** 2)
         cost += 0.5 * delta * delta * (root - 1) / count
         _add(gradient, hessian, e, f, share, gx, gy, r, 0.5 / (root * count))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +58,12 @@ class Energy:
             self._weight * hessian + jacobian.T @ jacobian,
         )
 
+    @cached_property
+    def _covered(self) -> NDArray[np.bool_]:
+        """Which edges, from each vertex to the next, may lie under other cloth."""
+        ends = np.isin(self.template.names, self.template.covered)
+        return ends | np.roll(ends, -1)
+
     @property
     def _weight(self) -> float:
         return _WEIGHT / self.evidence.scale**2
@@ -65,7 +72,7 @@ class Energy:
         evidence = self.evidence
         delta = self.delta * evidence.scale
         return function(
-            np.ascontiguousarray(vertices), evidence.samples, evidence.field, evidence.margin, delta, _SAMPLES
+            np.ascontiguousarray(vertices), self._covered, evidence.samples, evidence.field, evidence.margin, delta, _SAMPLES
         )
 
 

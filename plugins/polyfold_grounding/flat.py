@@ -17,6 +17,14 @@ __all__ = ["FlatFit", "Start", "fit_flat", "spread_starts"]
 
 Floats = NDArray[np.float64]
 
+COARSE, FINE, FREE, STARTS, APART = 6.0, 6.0, 4, 8, 30.0
+
+_SHARP = 30.0
+"""Least turn of the outline at a protruding corner [deg]."""
+
+_ROUNDING = 15.0
+"""How far outside a rounded corner a vertex may end up [px at scale 1]."""
+
 
 @dataclass(frozen=True, eq=False)
 class FlatFit:
@@ -48,22 +56,43 @@ def fit_flat(template: Template, evidence: Evidence, rotations: int = 24) -> lis
     Returns:
         Explanations with different headings, best first; at least one.
     """
-    coarse, fine = Energy(template, evidence, 6.0), Energy(template, evidence, 3.0)
+    coarse, fine = Energy(template, evidence, COARSE), Energy(template, evidence, FINE)
     symmetric = []
     for start in spread_starts(template, evidence, rotations):
         vertices, energy = levenberg_marquardt(coarse, template.generator, start.vertices, 15)
         symmetric.append(FlatFit(vertices, energy, start.heading))
     symmetric.sort(key=lambda fit: fit.energy)
     free = []
-    for fit in symmetric[:2]:
+    for fit in symmetric[:FREE]:
         vertices, energy = levenberg_marquardt(fine, FreeVertices(), fit.vertices, 40)
-        free.append(FlatFit(vertices, energy, fit.heading))
+        free.append(FlatFit(on_contour(template, vertices, evidence), energy, fit.heading))
     return sorted(free, key=lambda fit: fit.energy)
+
+
+def on_contour(template: Template, vertices: Floats, evidence: Evidence) -> Floats:
+    """Vertices drawn onto the nearby contour: real corners are rounded, and the best polygon's lie outside of them.
+
+    A protruding corner goes to the point that protrudes most, any other to the nearest one.
+    """
+    before, after = np.roll(vertices, 1, axis=0) - vertices, np.roll(vertices, -1, axis=0) - vertices
+    before, after = (arm / np.maximum(np.linalg.norm(arm, axis=1, keepdims=True), 1e-9) for arm in (before, after))
+    outward = -(before + after) / np.maximum(np.linalg.norm(before + after, axis=1, keepdims=True), 1e-9)
+    sharp = (before * after).sum(1) > -np.cos(np.radians(_SHARP))
+    turns = after[:, 0] * before[:, 1] - after[:, 1] * before[:, 0]
+    convex = turns * polygon_area(vertices) > 0
+    offsets = evidence.contour[None] - vertices[:, None]
+    distance = np.linalg.norm(offsets, axis=2)
+    reach = _ROUNDING * evidence.scale
+    along = (offsets * outward[:, None]).sum(2)
+    merit = np.where((sharp & convex)[:, None], along - 0.5 * np.sqrt(np.maximum(distance**2 - along**2, 0.0)), -distance)
+    chosen = np.where(distance < reach, merit, -np.inf).argmax(1)
+    moved = (distance.min(1) < reach) & ~np.isin(template.names, template.covered)
+    return np.where(moved[:, None], evidence.contour[chosen], vertices)
 
 
 def spread_starts(template: Template, evidence: Evidence, rotations: int) -> list[Start]:
     """The best starts at least 40 degrees apart, four at most."""
-    return _apart(_starts(template, evidence, rotations), 4, np.radians(40))
+    return _apart(_starts(template, evidence, rotations), STARTS, np.radians(APART))
 
 
 def _starts(template: Template, evidence: Evidence, rotations: int) -> list[Start]:

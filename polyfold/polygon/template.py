@@ -61,6 +61,7 @@ class Template:
         penalties: ranges that a plausible outline keeps.
         cyclic: the vertices' naming depends on how the garment lies (square, rectangle): the edge nearest the image's
             top, from the second to the third name, is the top.
+        covered: vertices that other cloth may hide (the crotch under a leg): the contour need not reach them.
     """
 
     def __init__(
@@ -73,6 +74,7 @@ class Template:
         generator: Generator,
         penalties: Sequence[Penalty] = (),
         cyclic: bool = False,
+        covered: Sequence[str] = (),
     ) -> None:
         self.kind = kind
         self.names = tuple(names)
@@ -82,6 +84,7 @@ class Template:
         self.generator = generator
         self.penalties = PenaltySet(penalties, self.names)
         self.cyclic = cyclic
+        self.covered = tuple(covered)
         self._check()
 
     @property
@@ -111,7 +114,8 @@ class Template:
         for name in (self.kind, *self.names):
             if not _NAME.fullmatch(name):
                 raise GarmentError(f"{name!r} is no usable name; take lower-case letters, digits and _, 40 at most")
-        for what, mentioned in [("parts", {n for p in self.parts.values() for n in p})]:
+        in_parts = {name for members in self.parts.values() for name in members}
+        for what, mentioned in (("parts", in_parts), ("covered", set(self.covered))):
             if unknown := sorted(mentioned - set(self.names)):
                 raise GarmentError(f"{what} of template {self.kind!r} name unknown vertices {unknown}; correct them")
         if missing := [name for name, words in self.descriptions.items() if not words]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
 from polyfold.polygon import Penalty, SymmetricGenerator, Template, angle_range, position_range, ratio_range
 
-__all__ = ["leg_penalties", "leg_shape", "pants_template", "two_legged"]
+__all__ = ["LegRanges", "leg_penalties", "leg_shape", "pants_template", "two_legged"]
 
 NAMES = (
     "leg_inner_left",
@@ -34,13 +35,13 @@ def pants_template() -> Template:
             leg_shape(waist=0.2, length=0.8, rise=0.26, gap=0.05, leg=0.17),
             leg_shape(waist=0.2, length=0.9, rise=0.26, gap=0.025, leg=0.16),
         ],
-        penalties=leg_penalties(
-            slender=(0.9, 4.5), rise=(0.2, 0.6), leg=(0.22, 0.75), outer=(-12, 40), crotch=(0.35, 0.65)
-        ),
+        penalties=leg_penalties(LegRanges()),
     )
 
 
-def two_legged(kind: str, shapes: list[list[tuple[float, float]]], penalties: list[Penalty]) -> Template:
+def two_legged(
+    kind: str, shapes: list[list[tuple[float, float]]], penalties: list[Penalty], covered: tuple[str, ...] = ()
+) -> Template:
     """A template with the vertices of pants."""
     words = {
         "leg_inner": "inner corner of the {side} leg's end",
@@ -56,6 +57,7 @@ def two_legged(kind: str, shapes: list[list[tuple[float, float]]], penalties: li
         canonical_shapes=shapes,
         generator=SymmetricGenerator(NAMES, [(n, n.replace("_left", "_right")) for n in NAMES if n.endswith("_left")]),
         penalties=penalties,
+        covered=covered,
     )
 
 
@@ -85,32 +87,50 @@ def _parts() -> dict[str, tuple[str, ...]]:
     return {**parts, "waist": WAIST, "leg ends": LEG_ENDS, "crotch": ("crotch",)}
 
 
-def leg_penalties(
-    slender: tuple[float, float],
-    rise: tuple[float, float],
-    leg: tuple[float, float],
-    outer: tuple[float, float],
-    crotch: tuple[float, float],
-) -> list[Penalty]:
-    """Ranges: length over waist, crotch along the spine from the waist, leg end over waist, outer seam's slant outward
-    [deg], crotch across the waist."""
+@dataclass(frozen=True)
+class LegRanges:
+    """What two-legged garments differ in: (low, high) ranges.
+
+    Attributes:
+        slender: length over waist.
+        rise: where the crotch lies between waist and leg ends.
+        crotch: where the crotch lies across the waist.
+        gap: distance of the legs' inner corners over the waist.
+        leg: width of a leg's end over the waist.
+        cuff: angle between a leg's end and its outer seam [deg].
+        flare: slant of the outer seam, outward [deg].
+        likeness: left over right.
+    """
+
+    slender: tuple[float, float] = (0.9, 4.5)
+    rise: tuple[float, float] = (0.2, 0.6)
+    crotch: tuple[float, float] = (0.35, 0.65)
+    gap: tuple[float, float] = (-0.02, 2.0)
+    leg: tuple[float, float] = (0.22, 0.75)
+    cuff: tuple[float, float] = (55.0, 125.0)
+    flare: tuple[float, float] = (-12.0, 40.0)
+    likeness: tuple[float, float] = (0.8, 1.25)
+
+
+def leg_penalties(ranges: LegRanges) -> list[Penalty]:
+    """The penalties of a two-legged garment."""
     down = SPINE[::-1]
     found = [
-        angle_range(WAIST, SPINE, 72, 108, 5),
-        ratio_range(SPINE, WAIST, *slender, 0.1),
-        position_range("crotch", down, *rise, 0.04),
-        position_range("crotch", WAIST, *crotch, 0.04),
-        Penalty("position", ("leg_inner_left", "leg_inner_right"), WAIST, -0.02, 2.0, 0.03),
-        ratio_range(("crotch", "leg_inner_left"), ("crotch", "leg_inner_right"), 0.75, 1.33, 0.06),
-        ratio_range(("waist_left", "leg_outer_left"), ("waist_right", "leg_outer_right"), 0.8, 1.25, 0.06),
-        ratio_range(("leg_inner_left", "leg_outer_left"), ("leg_inner_right", "leg_outer_right"), 0.67, 1.5, 0.08),
+        angle_range(WAIST, SPINE, 80, 100, 5),
+        ratio_range(SPINE, WAIST, *ranges.slender, 0.1),
+        position_range("crotch", down, *ranges.rise, 0.04),
+        position_range("crotch", WAIST, *ranges.crotch, 0.05),
+        Penalty("position", ("leg_inner_left", "leg_inner_right"), WAIST, *ranges.gap, 0.05),
+        ratio_range(("crotch", "leg_inner_left"), ("crotch", "leg_inner_right"), *ranges.likeness, 0.08),
+        ratio_range(("waist_left", "leg_outer_left"), ("waist_right", "leg_outer_right"), *ranges.likeness, 0.08),
+        ratio_range(("leg_inner_left", "leg_outer_left"), ("leg_inner_right", "leg_outer_right"), *ranges.likeness, 0.1),
     ]
     for side, sign in (("left", 1.0), ("right", -1.0)):
         seam = (f"waist_{side}", f"leg_outer_{side}")
         end = (f"leg_inner_{side}", f"leg_outer_{side}")
         found += [
-            ratio_range(end, WAIST, *leg, 0.04),
-            angle_range(end, seam, *sorted((sign * 55, sign * 125)), 5),
-            angle_range(seam, down, *sorted((sign * outer[0], sign * outer[1])), 5),
+            ratio_range(end, WAIST, *ranges.leg, 0.06),
+            angle_range(end, seam, *sorted(sign * angle for angle in ranges.cuff), 6),
+            angle_range(seam, down, *sorted(sign * angle for angle in ranges.flare), 5),
         ]
     return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from polyfold.polygon import Template
-from polyfold_standard.templates.pants import leg_penalties, leg_shape, two_legged
+from polyfold_standard.templates.pants import LegRanges, leg_penalties, leg_shape, two_legged
 
 __all__ = ["shorts_template"]
 
@@ -16,11 +16,22 @@ def shorts_template() -> Template:
     return two_legged(
         "shorts",
         shapes=[
-            leg_shape(waist=0.2, length=0.45, rise=0.28, gap=0.04, leg=0.24),
-            leg_shape(waist=0.2, length=0.35, rise=0.24, gap=0.04, leg=0.24),
-            leg_shape(waist=0.2, length=0.55, rise=0.3, gap=0.04, leg=0.2),
+            leg_shape(waist=0.2, length=0.43, rise=0.31, gap=0.03, leg=0.24),
+            leg_shape(waist=0.2, length=0.36, rise=0.27, gap=0.02, leg=0.26),
+            leg_shape(waist=0.2, length=0.5, rise=0.34, gap=0.04, leg=0.22),
         ],
         penalties=leg_penalties(
-            slender=(0.4, 2.2), rise=(0.35, 0.92), leg=(0.35, 0.95), outer=(-12, 50), crotch=(0.3, 0.7)
+            LegRanges(
+                slender=(0.88, 1.28),
+                rise=(0.68, 0.8),
+                crotch=(0.38, 0.62),
+                gap=(0.05, 0.36),
+                leg=(0.48, 0.75),
+                cuff=(77.0, 97.0),
+                flare=(3.0, 20.0),
+                likeness=(0.86, 1.16),
+            )
         ),
+        # Real legs overlap at the crotch.
+        covered=("crotch",),
     )
