@@ -34,6 +34,7 @@ PATTERN = Pattern(
         ("waist_left", "waist_right"),
         ("leg_outer_right", "leg_inner_right"),
     ),
+    slits=("crotch",),
 )
 
 

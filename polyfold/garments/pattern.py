@@ -17,6 +17,8 @@ class Pattern:
         size: longest side of a typical garment's bounding box [m].
         layers: 1, or 2 for a front and a back.
         openings: pairs of neighbouring or farther corners, in order, between which front and back are not sewn.
+        slits: corners at the inner end of a slit between their two neighbours, such as a crotch between the legs, that
+            an outline does not show when its sides touch; it is cut open then.
         cyclic: see :class:`Garment`.
     """
 
@@ -26,4 +28,5 @@ class Pattern:
     size: float
     layers: int = 1
     openings: tuple[tuple[str, str], ...] = ()
+    slits: tuple[str, ...] = ()
     cyclic: tuple[str, ...] = ()

@@ -22,6 +22,8 @@ Floats = NDArray[np.float64]
 FINE = 0.25  # spacing of the working outline, in edge lengths
 SMOOTHING = 0.6  # standard deviation of the smoothing along the outline, in edge lengths
 WHISKER = 0.3  # parts thinner than twice this are cut off, in edge lengths
+HIDDEN = 0.25  # how far inside the garment a slit's end lies if the slit is closed, as a share of its length
+SLIT = 1.6  # width of a slit that is cut, between its two sides, in edge lengths
 FAR = 0.15  # how far a keypoint may lie from the outline, as a share of the garment's size
 SMALLEST, LARGEST = 0.05, 3.0  # plausible longest sides [m]
 
@@ -60,6 +62,7 @@ def twin_from_outline(
     corners = _complete(keypoints, pattern) * flip
     ring = repair_outline(np.asarray(outline, float) * flip)
     ring, corners = _upright(ring, corners, pattern, size)
+    ring = _with_slits(ring, corners, pattern, edge_length)
     cut = _cut_out(ring, corners, pattern, edge_length).centred()
     mesh, vertices = mesh_panels(cut, pattern.layers, edge_length)
     return Garment(kind, name or f"{kind}-twin", None, mesh, vertices, cyclic=pattern.cyclic)
@@ -122,6 +125,29 @@ def _upright(ring: Floats, corners: Floats, pattern: Pattern, size: float) -> tu
     ring, corners = ring @ turn, corners @ turn
     scale = size / np.ptp(ring, axis=0).max()
     return ring * scale, corners * scale
+
+
+def _with_slits(ring: Floats, corners: Floats, pattern: Pattern, edge_length: float) -> Floats:
+    """The ring with closed slits cut open, as between trouser legs that lie side by side."""
+    import shapely
+
+    for name in pattern.slits:
+        index = pattern.corners.index(name)
+        end, sides = corners[index], corners[[index - 1, (index + 1) % len(corners)]]
+        along = sides.mean(0) - end
+        length = float(np.hypot(*along))
+        garment = shapely.Polygon(ring)
+        inside = garment.contains(shapely.Point(end))
+        if length == 0.0 or not inside or garment.exterior.distance(shapely.Point(end)) < HIDDEN * length:
+            continue
+        across = np.array([-along[1], along[0]]) / length
+        half = SLIT * edge_length / 2
+        # Half as long again as needed, so that it leaves the garment wherever the outline runs.
+        wedge = shapely.Polygon([end, end + 1.5 * (along + half * across), end + 1.5 * (along - half * across)])
+        parts = shapely.get_parts(garment.difference(wedge))
+        largest = max(parts, key=lambda part: part.area)
+        ring = _clockwise(shapely.get_coordinates(largest.exterior)[:-1])
+    return ring
 
 
 def _cut_out(ring: Floats, corners: Floats, pattern: Pattern, edge_length: float) -> Outline:
