@@ -108,6 +108,12 @@ class Episode:
 
         return filmstrip_of(self)
 
+    def show_result(self) -> Any:
+        """The last picture with the ideal outline dashed over it, uint8, shape (H, W, 3)."""
+        from polyfold.pictures import result_of
+
+        return result_of(self)
+
     def _repr_html_(self) -> str:
         from polyfold.pictures import episode_html
 

@@ -15,7 +15,7 @@ from polyfold.ideal import fold_ideally
 if TYPE_CHECKING:
     from polyfold.episode import Episode, Step
 
-__all__ = ["episode_html", "filmstrip_of", "result_caption"]
+__all__ = ["episode_html", "filmstrip_of", "result_caption", "result_of"]
 
 
 def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
@@ -29,6 +29,13 @@ def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
         result_caption=result_caption(episode),
         ideal_outline=_ideal_outline(episode),
     )
+
+
+def result_of(episode: Episode) -> NDArray[np.uint8]:
+    """The last picture with the ideal outline dashed over it, uint8, shape (H, W, 3)."""
+    from polyfold import view
+
+    return view.overlay(episode.final, outline=_ideal_outline(episode))
 
 
 def _ideal_outline(episode: Episode) -> NDArray[np.float64] | None:

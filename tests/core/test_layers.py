@@ -11,6 +11,13 @@ CORE = sorted((ROOT / "polyfold").rglob("*.py"))
 PLUGINS = sorted(path for path in (ROOT / "plugins").rglob("*.py"))
 
 
+ORDER = """
+    errors geometry types polygon garments interfaces hookspecs catalog plugins config prompts transcript tasks ideal
+    store record view pictures episode agent judging sources folding benchmark cli __main__
+""".split()
+"""The core from the ground up: a module's top-level imports come from above it, or from its own package."""
+
+
 def imports(path):
     """(module, name or None) of every import statement in a file, wherever it stands."""
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
@@ -23,6 +30,19 @@ def imports(path):
 @pytest.mark.parametrize("path", CORE, ids=lambda path: str(path.relative_to(ROOT)))
 def test_core_imports_no_plugin(path):
     assert not [module for module, _ in imports(path) if module and module.startswith("polyfold_")]
+
+
+@pytest.mark.parametrize("path", CORE, ids=lambda path: str(path.relative_to(ROOT)))
+def test_core_modules_import_only_what_stands_below_them(path):
+    parts = path.relative_to(ROOT / "polyfold").with_suffix("").parts
+    if parts == ("__init__",):
+        return
+    own = ORDER.index(parts[0])
+    for node in ast.parse(path.read_text("utf-8")).body:
+        if not isinstance(node, ast.ImportFrom) or not node.module.startswith("polyfold"):
+            continue
+        names = [alias.name for alias in node.names] if node.module == "polyfold" else [node.module.split(".")[1]]
+        assert all(ORDER.index(name) <= own for name in names), ast.unparse(node)
 
 
 @pytest.mark.parametrize("path", PLUGINS, ids=lambda path: str(path.relative_to(ROOT)))
