@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-__all__ = ["build_pairs", "pair_normals", "resolve_pairs", "vertex_normals"]
+__all__ = ["pair_normals", "resolve_pairs", "update_pairs", "vertex_normals"]
 
 
 @njit(cache=True, fastmath=True)
@@ -49,18 +49,54 @@ def _side_of(normals, i, dx, dy, dz, d2, radius_2):
 
 
 @njit(cache=True, fastmath=True)
-def build_pairs(
-    x, normals, excluded_start, excluded, radius, thickness, pad, old_start, old_j, old_side, start, pj, side
+def _sort_into_cells(cell_of, cells, wanted):
+    """Members of every cell, in order: those of cell c are ``members[start[c]:start[c + 1]]``."""
+    count = cell_of.shape[0]
+    start = np.zeros(cells + 1, np.int32)
+    for i in range(count):
+        if wanted[i]:
+            start[cell_of[i] + 1] += 1
+    for cell in range(cells):
+        start[cell + 1] += start[cell]
+    fill = start[:-1].copy()
+    members = np.empty(start[cells] + 1, np.uint32)
+    for i in range(count):
+        if wanted[i]:
+            members[fill[cell_of[i]]] = i
+            fill[cell_of[i]] += 1
+    return start, members
+
+
+@njit(cache=True, fastmath=True)
+def _may_touch(x, normals, i, j, excluded_start, excluded, tall):
+    """Whether the pair isn't excluded and is near enough along its common normal."""
+    nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
+    sign = np.float32(1.0)
+    if nx * normals[j, 0] + ny * normals[j, 1] + nz * normals[j, 2] < 0:
+        sign = np.float32(-1.0)
+    nx, ny, nz = nx + sign * normals[j, 0], ny + sign * normals[j, 1], nz + sign * normals[j, 2]
+    along = nx * (x[j, 0] - x[i, 0]) + ny * (x[j, 1] - x[i, 1]) + nz * (x[j, 2] - x[i, 2])
+    if along * along > tall * tall * (nx * nx + ny * ny + nz * nz):
+        return False
+    for k in range(excluded_start[i], excluded_start[i + 1]):
+        if excluded[k] == j:
+            return False
+    return True
+
+
+@njit(cache=True, fastmath=True)
+def update_pairs(
+    x, normals, moved, excluded_start, excluded, radius, thickness, pad, old_start, old_j, old_side, start, pj, side
 ):  # fmt: skip
-    """Fill the list of pairs that may touch before a particle has moved by half of ``pad``.
+    """List the pairs that may touch soon, searching only around the particles that ``moved`` since they were listed.
 
     Pairs are kept by first particle: ``pj[start[i]:start[i + 1]]``. ``side`` holds, for each, the side of i on which
     j is and the side of j on which i is. A pair of the old list keeps a side while one is still over the other's disc.
     Returns the number of pairs, or -1 if ``pj`` is too short.
     """
     count = x.shape[0]
-    reach = radius + pad
-    tall = thickness + pad
+    reach, tall = radius + pad, thickness + pad
+    reach_2, radius_2 = reach * reach, radius * radius
     inverse_cell = np.float32(1.0) / reach
     low_x, low_y = x[0, 0], x[0, 1]
     high_x, high_y = low_x, low_y
@@ -68,67 +104,51 @@ def build_pairs(
         low_x, high_x = min(low_x, x[i, 0]), max(high_x, x[i, 0])
         low_y, high_y = min(low_y, x[i, 1]), max(high_y, x[i, 1])
     columns = int((high_x - low_x) * inverse_cell) + 3
-    rows = int((high_y - low_y) * inverse_cell) + 3
-    cell_start = np.zeros(columns * rows + 1, np.int32)
+    cells = columns * (int((high_y - low_y) * inverse_cell) + 3)
     cell_of = np.empty(count, np.int32)
     for i in range(count):
-        cell = (int((x[i, 1] - low_y) * inverse_cell) + 1) * columns + int((x[i, 0] - low_x) * inverse_cell) + 1
-        cell_of[i] = cell
-        cell_start[cell + 1] += 1
-    for cell in range(columns * rows):
-        cell_start[cell + 1] += cell_start[cell]
-    fill = cell_start[:-1].copy()
-    members = np.empty(count, np.uint32)
-    sorted_x = np.empty((count, 3), np.float32)
-    for i in range(count):
-        at = fill[cell_of[i]]
-        fill[cell_of[i]] += 1
-        members[at] = i
-        sorted_x[at, 0], sorted_x[at, 1], sorted_x[at, 2] = x[i, 0], x[i, 1], x[i, 2]
-    reach_2, radius_2 = reach * reach, radius * radius
+        cell_of[i] = (int((x[i, 1] - low_y) * inverse_cell) + 1) * columns + int((x[i, 0] - low_x) * inverse_cell) + 1
+    all_start, all_members = _sort_into_cells(cell_of, cells, np.ones(count, np.bool_))
+    moved_start, moved_members = _sort_into_cells(cell_of, cells, moved)
+    near = np.empty(count, np.uint32)
     pairs = 0
     for i in range(count):
         start[i] = pairs
+        if pairs + 256 > pj.shape[0]:
+            return -1
+        if not moved[i]:
+            for k in range(old_start[i], old_start[i + 1]):
+                pj[pairs] = old_j[k]
+                side[pairs, 0], side[pairs, 1] = old_side[k, 0], old_side[k, 1]
+                pairs += not moved[old_j[k]]
+        cell_start = all_start if moved[i] else moved_start
+        members = all_members if moved[i] else moved_members
+        found = 0
+        # Without branches: whether a candidate is near can't be predicted, and this loop sees most of the work.
         for row in range(-1, 2):
             first = cell_of[i] + row * columns - 1
             for m in range(cell_start[first], cell_start[first + 3]):
-                dx = sorted_x[m, 0] - x[i, 0]
-                dy = sorted_x[m, 1] - x[i, 1]
-                dz = sorted_x[m, 2] - x[i, 2]
-                d2 = dx * dx + dy * dy + dz * dz
-                if d2 > reach_2:
-                    continue
                 j = members[m]
-                if j <= i:
-                    continue
-                skip = False
-                for k in range(excluded_start[i], excluded_start[i + 1]):
-                    if excluded[k] == j:
-                        skip = True
+                dx, dy, dz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+                near[found] = j
+                found += (j > i) & (dx * dx + dy * dy + dz * dz < reach_2)
+        for n in range(min(found, 256)):
+            j = near[n]
+            if not _may_touch(x, normals, i, j, excluded_start, excluded, tall):
+                continue
+            dx, dy, dz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+            d2 = dx * dx + dy * dy + dz * dz
+            side_i, over_i = _side_of(normals, i, dx, dy, dz, d2, radius_2)
+            side_j, over_j = _side_of(normals, j, -dx, -dy, -dz, d2, radius_2)
+            if over_i or over_j:
+                for k in range(old_start[i], old_start[i + 1]):
+                    if old_j[k] == j:
+                        side_i = old_side[k, 0] if over_i else side_i
+                        side_j = old_side[k, 1] if over_j else side_j
                         break
-                if skip:
-                    continue
-                nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
-                if nx * normals[j, 0] + ny * normals[j, 1] + nz * normals[j, 2] >= 0:
-                    nx, ny, nz = nx + normals[j, 0], ny + normals[j, 1], nz + normals[j, 2]
-                else:
-                    nx, ny, nz = nx - normals[j, 0], ny - normals[j, 1], nz - normals[j, 2]
-                if abs(nx * dx + ny * dy + nz * dz) > tall * np.sqrt(nx * nx + ny * ny + nz * nz):
-                    continue
-                side_i, over_i = _side_of(normals, i, dx, dy, dz, d2, radius_2)
-                side_j, over_j = _side_of(normals, j, -dx, -dy, -dz, d2, radius_2)
-                if over_i or over_j:
-                    for k in range(old_start[i], old_start[i + 1]):
-                        if old_j[k] == j:
-                            side_i = old_side[k, 0] if over_i else side_i
-                            side_j = old_side[k, 1] if over_j else side_j
-                            break
-                if pairs >= pj.shape[0]:
-                    return -1
-                pj[pairs] = j
-                side[pairs, 0] = side_i
-                side[pairs, 1] = side_j
-                pairs += 1
+            pj[pairs] = j
+            side[pairs, 0], side[pairs, 1] = side_i, side_j
+            pairs += 1
     start[count] = pairs
     return pairs
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from polyfold_xpbd.contact import build_pairs, pair_normals, resolve_pairs, vertex_normals
+from polyfold_xpbd.contact import pair_normals, resolve_pairs, update_pairs, vertex_normals
 
 __all__ = ["DIVERGED", "RUNNING", "SETTLED", "advance"]
 
 RUNNING, SETTLED, DIVERGED = 0, 1, 2
-NORMALS_EVERY = 5
-"""Substeps between refreshes of the contact normals."""
+LOOK_EVERY = 5
+"""Substeps between looks at who is near whom and which way the sheet faces."""
+BEND_EVERY = 2
+"""Substeps per bending step: bending is slow against stretching, and stable far beyond this."""
 
 
 @njit(cache=True, fastmath=True)
@@ -19,12 +21,21 @@ def _bend(x, v, hinges, weights, dt):
     for h in range(hinges.shape[0]):
         a, b, c, d = hinges[h, 0], hinges[h, 1], hinges[h, 2], hinges[h, 3]
         wa, wb, wc, wd = weights[h, 0], weights[h, 1], weights[h, 2], weights[h, 3]
-        for k in range(3):
-            curvature = (wa * x[a, k] + wb * x[b, k] + wc * x[c, k] + wd * x[d, k]) * dt
-            v[a, k] -= wa * curvature
-            v[b, k] -= wb * curvature
-            v[c, k] -= wc * curvature
-            v[d, k] -= wd * curvature
+        kx = (wa * x[a, 0] + wb * x[b, 0] + wc * x[c, 0] + wd * x[d, 0]) * dt
+        ky = (wa * x[a, 1] + wb * x[b, 1] + wc * x[c, 1] + wd * x[d, 1]) * dt
+        kz = (wa * x[a, 2] + wb * x[b, 2] + wc * x[c, 2] + wd * x[d, 2]) * dt
+        v[a, 0] -= wa * kx
+        v[a, 1] -= wa * ky
+        v[a, 2] -= wa * kz
+        v[b, 0] -= wb * kx
+        v[b, 1] -= wb * ky
+        v[b, 2] -= wb * kz
+        v[c, 0] -= wc * kx
+        v[c, 1] -= wc * ky
+        v[c, 2] -= wc * kz
+        v[d, 0] -= wd * kx
+        v[d, 1] -= wd * ky
+        v[d, 2] -= wd * kz
 
 
 @njit(cache=True, fastmath=True)
@@ -114,20 +125,25 @@ def _is_finite(x):
 def _velocities(x, previous, v, inverse_dt):
     energy = np.float32(0.0)
     for i in range(x.shape[0]):
-        for k in range(3):
-            velocity = (x[i, k] - previous[i, k]) * inverse_dt
-            v[i, k] = velocity
-            energy += velocity * velocity
+        vx = (x[i, 0] - previous[i, 0]) * inverse_dt
+        vy = (x[i, 1] - previous[i, 1]) * inverse_dt
+        vz = (x[i, 2] - previous[i, 2]) * inverse_dt
+        v[i, 0], v[i, 1], v[i, 2] = vx, vy, vz
+        energy += vx * vx + vy * vy + vz * vz
     return energy
 
 
 @njit(cache=True, fastmath=True)
-def _farthest(x, reference):
-    farthest = np.float32(0.0)
+def _mark_moved(x, listed, moved, limit, everything):
+    """Mark the particles that left the place where they were last listed by more than ``limit``; whether there are."""
+    any_moved = False
     for i in range(x.shape[0]):
-        dx, dy, dz = x[i, 0] - reference[i, 0], x[i, 1] - reference[i, 1], x[i, 2] - reference[i, 2]
-        farthest = max(farthest, dx * dx + dy * dy + dz * dz)
-    return farthest
+        dx, dy, dz = x[i, 0] - listed[i, 0], x[i, 1] - listed[i, 1], x[i, 2] - listed[i, 2]
+        moved[i] = everything or dx * dx + dy * dy + dz * dz > limit * limit
+        if moved[i]:
+            listed[i, 0], listed[i, 1], listed[i, 2] = x[i, 0], x[i, 1], x[i, 2]
+            any_moved = True
+    return any_moved
 
 
 @njit(cache=True)
@@ -139,7 +155,7 @@ def advance(
     """Run substeps ``first`` to ``last`` in place; stop early once slow (``rest_speed`` > 0) for ten substeps.
 
     Args (beyond the model's arrays and the state's buffers):
-        clock: substeps since the last list and since the last slow start, int64, shape (3,).
+        clock: substeps since the stage began and for how many the cloth has been slow, int64, shape (2,).
         settings: dt, radius, thickness, pad, table and cloth friction, relaxation, cap, floor, top speed, float32.
 
     Returns:
@@ -149,32 +165,30 @@ def advance(
     table_friction, cloth_friction, relaxation, cap = settings[4], settings[5], settings[6], settings[7]
     floor, fastest = settings[8], settings[9]
     inverse_dt = np.float32(1.0) / dt
-    limit = (np.float32(0.5) * pad) ** 2
+    moved = np.empty(x.shape[0], np.bool_)
     for k in range(first, last):
-        _bend(x, v, hinges, hinge_weights, dt)
+        if clock[0] % BEND_EVERY == 0:
+            _bend(x, v, hinges, hinge_weights, np.float32(BEND_EVERY) * dt)
         _predict(x, v, previous, mobility, dt, damping, fastest)
         if grasped.shape[0] > 0:
             _carry(x, grasped, offsets, arm, directions, path, angles, k)
             _hold_back(x, mobility, tied, anchors, lengths)
         _stretch(x, mobility, edges, rest_lengths)
-        if clock[0] < 0 or _farthest(x, listed) > limit:
+        if clock[0] % LOOK_EVERY == 0:
             if not _is_finite(x):
                 return DIVERGED, k
             vertex_normals(x, corners, use, normals)
-            old_start[:] = start
-            old_j[: start[-1]] = pj[: start[-1]]
-            old_side[: start[-1], :] = side[: start[-1], :]
-            found = build_pairs(
-                x, normals, excluded_start, excluded, radius, thickness, pad,
-                old_start, old_j, old_side, start, pj, side,
-            )  # fmt: skip
-            if found < 0:
-                return DIVERGED, k
-            pair_normals(normals, start, pj, side, pair_normal)
-            listed[:, :] = x
-            clock[0] = 0
-        elif clock[0] % NORMALS_EVERY == 0:
-            vertex_normals(x, corners, use, normals)
+            if _mark_moved(x, listed, moved, np.float32(0.3) * pad, clock[0] == 0):
+                count = start[-1]
+                old_start[:] = start
+                old_j[:count] = pj[:count]
+                old_side[:count, :] = side[:count, :]
+                found = update_pairs(
+                    x, normals, moved, excluded_start, excluded, radius, thickness, pad,
+                    old_start, old_j, old_side, start, pj, side,
+                )  # fmt: skip
+                if found < 0:
+                    return DIVERGED, k
             pair_normals(normals, start, pj, side, pair_normal)
         clock[0] += 1
         resolve_pairs(

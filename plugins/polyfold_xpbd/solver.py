@@ -20,7 +20,7 @@ __all__ = ["Solver"]
 
 DISC_RADIUS = 0.8
 """Radius of a contact disc in edge lengths: discs of this size leave no gap in an even mesh."""
-PAD = 0.4
+PAD = 0.25
 """How far ahead the list of near pairs looks, in edge lengths."""
 PAIRS_PER_PARTICLE = 64
 """Room in the list of near pairs. Flat stacks have about 10 however high they are; more than this is a blow-up."""
@@ -70,7 +70,7 @@ class Solver:
         self._second, self._old_second = np.zeros(capacity, np.uint32), np.zeros(capacity, np.uint32)
         self._side, self._old_side = np.zeros((capacity, 2), np.int8), np.zeros((capacity, 2), np.int8)
         self._pair_normal = np.zeros((capacity, 3), np.float32)
-        self._clock = np.array([-1, 0], np.int64)
+        self._clock = np.zeros(2, np.int64)
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
@@ -146,7 +146,7 @@ class Solver:
         interval: float,
     ) -> bool:
         # A fresh list and clock make a stage depend on the saved state alone, so that restore() repeats exactly.
-        self._clock[:] = -1, 0
+        self._clock[:] = 0
         chunk = substeps if on_frame is None else max(1, round(interval / self.dt))
         done = 0
         while done < substeps:
