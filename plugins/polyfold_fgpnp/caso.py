@@ -20,8 +20,8 @@ class Caso:
     """The pair of contour pixels with the best affordance score (conditional affordance score optimisation).
 
     Each of two picks then slides along the contour towards the other by a tenth of their distance. That is not in the
-    paper (0 turns it off): over the 70 tasks on three garments of each kind it lowers the mean error of the moved part
-    by 5 %, of trousers folded in half by 30 %, and no kind of task loses by it; a fifth is too much.
+    paper (0 turns it off). Over the 70 tasks, their true fold lines and three garments of each kind it lowers the mean
+    error of the moved part from 10.2 to 9.7 mm, of trousers folded in half from 11.5 to 7.8 mm; the rest changes little.
     """
 
     class Config(PickConfig):
