@@ -23,6 +23,10 @@ PANEL, GAP, MARGIN = 330, 26, 26
 HEADING, TITLE, CAPTION = 24, 17, 15
 
 
+_Sign = tuple[str, str, Colour]
+"""A line of the legend: sign, meaning and colour."""
+
+
 @dataclass(frozen=True, eq=False)
 class Frame:
     """One step of a filmstrip.
@@ -100,12 +104,14 @@ def _result_panel(rgb: Image, title: str, caption: str, ideal_outline: ArrayLike
     return _Panel(picture, wrapped(title, TITLE, PANEL, bold=True), wrapped(caption, CAPTION, PANEL, most=6))
 
 
-def _lay_out(rows: list[list[_Panel]], heading: str, legend: list[tuple[str, str, Colour]]) -> Image:
+def _lay_out(rows: list[list[_Panel]], heading: str, entries: list[_Sign]) -> Image:
     width = 2 * MARGIN + max(len(row) for row in rows) * (PANEL + GAP) - GAP
     heading_lines = wrapped(heading, HEADING, width - 2 * MARGIN, bold=True, most=3)
     top = MARGIN + (len(heading_lines) * line_height(HEADING) + 14 if heading_lines else 0)
     heights = [_row_height(row) for row in rows]
-    height = top + sum(heights) + (len(rows) - 1) * GAP + (line_height(CAPTION) + 12 if legend else 0) + MARGIN - 8
+    legend = _legend_rows(entries, width - 2 * MARGIN + 24)
+    legend_height = len(legend) * line_height(CAPTION) + 12 if legend else 0
+    height = top + sum(heights) + (len(rows) - 1) * GAP + legend_height + MARGIN - 8
     page = Page(width, height)
     page.lines(heading_lines, MARGIN, MARGIN - 4, HEADING, INK, bold=True)
     y = top
@@ -142,9 +148,9 @@ def _lay_row(page: Page, row: list[_Panel], y: int) -> None:
             page.text("›", x - GAP / 2, (below_titles + below_pictures) / 2, 30, FAINT, anchor="mm")
 
 
-def _legend(frames: Sequence[Frame], with_ideal: bool) -> list[tuple[str, str, Colour]]:
+def _legend(frames: Sequence[Frame], with_ideal: bool) -> list[_Sign]:
     """Sign, meaning and colour of what is drawn somewhere in the strip."""
-    entries = []
+    entries: list[_Sign] = []
     if any(frame.fold_line is not None for frame in frames):
         entries.append(("▲", "fold line, teeth on the lifted side", FOLD_LINE))
     arms = max((frame.action.arms for frame in frames if frame.action is not None), default=0)
@@ -155,9 +161,25 @@ def _legend(frames: Sequence[Frame], with_ideal: bool) -> list[tuple[str, str, C
     return entries
 
 
-def _lay_legend(page: Page, entries: list[tuple[str, str, Colour]], x: float, y: float) -> None:
-    for sign, meaning, colour in entries:
-        page.text(sign, x, y, CAPTION, colour, bold=True)
-        x += text_width(sign, CAPTION, bold=True) + 6
-        page.text(meaning, x, y, CAPTION, FAINT)
-        x += text_width(meaning, CAPTION) + 24
+def _legend_rows(entries: list[_Sign], width: float) -> list[list[_Sign]]:
+    """The entries in as many rows as they need."""
+    rows: list[list[_Sign]] = [[]]
+    for entry in entries:
+        if rows[-1] and sum(_sign_width(other) for other in [*rows[-1], entry]) > width:
+            rows.append([])
+        rows[-1].append(entry)
+    return rows if entries else []
+
+
+def _sign_width(entry: _Sign) -> float:
+    sign, meaning, _ = entry
+    return text_width(sign, CAPTION, bold=True) + 6 + text_width(meaning, CAPTION) + 24
+
+
+def _lay_legend(page: Page, rows: list[list[_Sign]], x: float, y: float) -> None:
+    for number, row in enumerate(rows):
+        at, top = x, y + number * line_height(CAPTION)
+        for sign, meaning, colour in row:
+            page.text(sign, at, top, CAPTION, colour, bold=True)
+            page.text(meaning, at + text_width(sign, CAPTION, bold=True) + 6, top, CAPTION, FAINT)
+            at += _sign_width((sign, meaning, colour))

@@ -47,6 +47,13 @@ def test_long_texts_are_wrapped_and_cut_but_never_widen_the_page(rgb):
     assert (long[:, -20:] == 255).all()
 
 
+def test_the_legend_fits_narrow_pages(rgb, scene, fold_line, action):
+    outline = scene.model.outline()
+    for count in (0, 1, 2, 4):
+        strip = view.filmstrip(frames_of(count, rgb, scene, fold_line, action), rgb, ideal_outline=outline)
+        assert (strip[:, -20:] == 255).all()
+
+
 def test_wide_pictures_leave_no_gap_below():
     square, wide = np.zeros((200, 200, 3), np.uint8), np.zeros((100, 200, 3), np.uint8)
     assert view.filmstrip([], square).shape[0] - view.filmstrip([], wide).shape[0] == pytest.approx(165, abs=2)
