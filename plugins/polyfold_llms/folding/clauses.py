@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from polyfold_llms.folding.folds import OPPOSITE_CORNER, OPPOSITE_EDGE, Fold
-from polyfold_llms.folding.frames import Frame
+from polyfold_llms.folding.frames import WHOLES, Frame
 from polyfold_llms.folding.goals import MAX_HALVES, fold_for_goal, fold_in_fraction, fold_in_half
 from polyfold_llms.folding.parts import Garment, NotUnderstoodError, Part, resolve
 from polyfold_llms.folding.phrases import NounPhrase
@@ -42,15 +42,19 @@ def parts_of(phrase: NounPhrase, garment: Garment, role: str, context: NounPhras
 
 def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps: int | None) -> list[Fold]:
     """The folds that one clause asks for, given what was folded before."""
+    if frame.times < 1:
+        raise NotUnderstoodError("it asks for no fold at all")
     if frame.times > MAX_HALVES:
         raise NotUnderstoodError(f"{frame.times} times is more often than cloth can be folded")
     frame = _inherited(frame, previous)
-    context = next((p for p in frame.moving if p.noun), None) or _noun_before(previous)
+    context = next((p for p in frame.moving if p.noun and p.noun not in WHOLES), None) or frame.context
     moving = [part for phrase in frame.moving for part in parts_of(phrase, garment, "moving", context)]
     excluded = {part for phrase in frame.excluded for part in parts_of(phrase, garment, "moving", context)}
     moving = [part for part in moving if part not in excluded]
     targets = [part for phrase in frame.targets for part in parts_of(phrase, garment, "target", context)]
-    axes = [part for phrase in frame.axes for part in parts_of(phrase, _open(garment), "axis", None)]
+    axes = [part for phrase in frame.axes for part in parts_of(phrase, _open(garment), "axis", frame.context)]
+    if moving and moving[0].what == "corner":
+        targets += [part for part in axes if part.what == "centre"]
     clause = Clause(frame, tuple(targets), tuple(axes))
     moving = [part for part in moving if part.what not in ("result", "rest", "triangle", "body", "crease")]
     if moving and moving[0].what in MIDDLE:
@@ -58,12 +62,17 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
     if frame.leads is not None:
         moving = _led(moving, parts_of(frame.leads, garment, "moving", context))
     folds: list[Fold] = []
+    if moving and not (frame.verbs or frame.placed or frame.fractions or frame.goals or frame.same or previous):
+        if {part.what for part in moving} != {"sleeve"}:
+            raise NotUnderstoodError(f"it names “{frame.moving[0].text}” but not what to do with it")
     if not moving:
         for _ in range(frame.times):
             ahead = replace_folds(garment, folds)
             folds += _fold_whole(clause, ahead, steps)
         return folds
-    return _fold_parts(moving, clause, garment)
+    for _ in range(frame.times):
+        folds += _fold_parts(moving, clause, replace_folds(garment, folds))
+    return folds
 
 
 def replace_folds(garment: Garment, more: list[Fold]) -> Garment:
@@ -74,10 +83,6 @@ def replace_folds(garment: Garment, more: list[Fold]) -> Garment:
 def _open(garment: Garment) -> Garment:
     """Notes about free choices make no sense for axes."""
     return replace(garment, notes=[])
-
-
-def _noun_before(previous: Frame | None) -> NounPhrase | None:
-    return next((p for p in previous.moving if p.noun), None) if previous else None
 
 
 def _inherited(frame: Frame, previous: Frame | None) -> Frame:
@@ -165,6 +170,8 @@ def _fold_whole(clause: Clause, garment: Garment, steps: int | None) -> list[Fol
         return fold_for_goal(garment, frame.goals[0], steps)
     if clause.targets:
         raise NotUnderstoodError("it does not say which part to move there")
+    if set(frame.verbs) == {"turn"} and frame.directions == ["over"]:
+        raise NotUnderstoodError("turning the whole garment over is no fold; I only fold parts over onto the cloth")
     if frame.directions or frame.manners or frame.again:
         return [fold_in_half(garment, _moving_edge(clause, garment))]
     if set(frame.verbs) & {"fold", "tidy", "halve"}:
@@ -196,6 +203,9 @@ def _diagonal(clause: Clause, garment: Garment) -> Fold:
     creases = [part.which for part in clause.axes if part.what == "corner"]
     if not creases and garment.folds:
         return fold_in_half(garment)
+    first = frame_lead(clause, garment)
+    if first in OPPOSITE_CORNER:
+        return Fold("corner", first, OPPOSITE_CORNER[first])
     if creases:
         corner = next(c for c in ("bottom_left", "bottom_right") if c not in creases)
     else:
@@ -204,15 +214,26 @@ def _diagonal(clause: Clause, garment: Garment) -> Fold:
     return Fold("corner", corner, OPPOSITE_CORNER[corner])
 
 
+def frame_lead(clause: Clause, garment: Garment) -> str:
+    """The part that the clause says to begin with, or an empty string."""
+    if clause.frame.leads is None:
+        return ""
+    found = parts_of(clause.frame.leads, garment, "moving", NounPhrase(noun="corner"))
+    return found[0].which if found else ""
+
+
 # Edges ---------------------------------------------------------------------------------------------------------------
 
 
 def _edge_pair(names: list[str], clause: Clause, garment: Garment) -> list[Fold]:
     frame = clause.frame
-    to_middle = clause.toward(*MIDDLE) or clause.has("meetmiddle", "halfway", "cupboard")
+    meets = clause.has("together") or "meet" in frame.verbs
+    at_middle = meets and any(part.what in MIDDLE for part in clause.axes)
+    to_middle = at_middle or clause.toward(*MIDDLE) or clause.has("meetmiddle", "halfway", "cupboard")
     if not to_middle:
         if garment.family == "pants" and set(names) == {"left", "right"}:
-            if any(part == Part("edge", "top") for part in clause.targets) or "up" in frame.directions:
+            upward = "up" in frame.directions and not meets
+            if any(part == Part("edge", "top") for part in clause.targets) or upward:
                 return [fold_in_half(garment, "bottom")]
         if (
             clause.has("together", "vertical", "edgetoedge")
@@ -243,6 +264,8 @@ def _edge(part: Part, clause: Clause, garment: Garment) -> Fold:
     edge = part.which
     if clause.toward(*MIDDLE) or clause.has("halfway", "meetmiddle"):
         return Fold("middle", _definite(edge, garment))
+    if _meets_last(edge, clause, garment):
+        return Fold("middle", edge)
     goals = [target.which for target in clause.targets if target.what in ("edge", "sleeve", "band")]
     if edge == "any":
         return fold_in_half(garment, _moving_edge(clause, garment))
@@ -261,6 +284,13 @@ def _edge(part: Part, clause: Clause, garment: Garment) -> Fold:
     if not (clause.frame.directions or clause.frame.fractions or clause.targets or clause.axes):
         garment.note(f"The instruction does not say where to; I fold the {edge} part onto the opposite one.")
     return fold_in_half(garment, edge)
+
+
+def _meets_last(edge: str, clause: Clause, garment: Garment) -> bool:
+    """``fold the top edge to the middle, then the bottom edge up to meet it``."""
+    last = garment.folds[-1] if garment.folds else None
+    pronoun = any(phrase.pronoun == "it" for phrase in clause.frame.targets)
+    return pronoun and last is not None and last.action == "middle" and last.part == OPPOSITE_EDGE.get(edge)
 
 
 def _check_direction(edge: str, clause: Clause) -> None:

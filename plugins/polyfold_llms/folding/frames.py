@@ -8,9 +8,19 @@ from dataclasses import dataclass, field
 from polyfold_llms.folding.phrases import NounPhrase, noun_phrase, starts_noun_phrase
 from polyfold_llms.folding.tokens import Token
 
-__all__ = ["Frame", "Request", "frames_of"]
+__all__ = ["WHOLES", "Frame", "Request", "frames_of"]
 
-MOVES = ("fold", "move", "halve", "tidy", "make", "quarter")
+SHAPES = ("triangle", "result")
+"""Nouns that name a shape after *into* and *make*."""
+
+SPANS = ("runs", "running", "run", "going", "goes", "extending", "extends", "leading", "leads", "drawn")
+"""Verbs by which a line is described: *the diagonal that runs from ... to ...*."""
+
+SEAMS = ("armpit", "armhole", "crotch")
+"""Nouns that lie on creases and never move on their own."""
+
+WHOLES = ("triangle", "result", "rest")
+"""Nouns that stand for the garment as folded so far."""
 
 
 @dataclass
@@ -36,6 +46,7 @@ class Frame:
     negated: bool = False
     from_source: bool = False
     elliptical: bool = False
+    context: NounPhrase | None = None
     leads: NounPhrase | None = None
 
     @property
@@ -54,7 +65,7 @@ class Frame:
     @property
     def specific(self) -> bool:
         """Whether a part, not the whole garment, moves."""
-        return any(phrase.names_part for phrase in self.moving)
+        return any(phrase.names_part and phrase.noun not in WHOLES for phrase in self.moving)
 
 
 @dataclass
@@ -81,16 +92,26 @@ class _Assembler:
         self.order = "then"
         self.role = "moving"
         self.purpose = False
+        self.spanning = False
+        self.shaping = False
         self.joined = False
         self.sentence_start = 0
+        self.skip_to = 0
         self.garments: list[str] = []
         self.steps: int | None = None
 
     def run(self) -> Request:
         at = 0
         while at < len(self.tokens):
+            if at < self.skip_to:
+                at += 1
+                continue
             token = self.tokens[at]
-            if starts_noun_phrase(self.tokens, at) and not self._ordinal(at):
+            if self._side_before_side(at):
+                self._lead(NounPhrase(sides=(frozenset({token.value}),)))
+                at += 3
+                continue
+            if starts_noun_phrase(self.tokens, at) and not self._ordinal(at) and not self._shape(at):
                 phrase, at = noun_phrase(self.tokens, at)
                 self._add_phrase(phrase, at)
                 self.joined = False
@@ -110,7 +131,7 @@ class _Assembler:
         elif order != "then":
             self.order = order
         self.frame = Frame()
-        self.role, self.purpose = "moving", False
+        self.role, self.purpose, self.spanning, self.shaping = "moving", False, False, False
 
     def _ordered(self) -> list[Frame]:
         """Clauses marked ``earlier`` come before everything of their sentence; ``later`` ones after the next."""
@@ -142,7 +163,10 @@ class _Assembler:
         if token.value == "then":
             self._close()
         elif token.value == "first":
-            if self.frame.moving and self._ends(at + 1):
+            if self.purpose and self.frame.moving and not self.frame.verbs:
+                self.frame.leads = self.frame.moving.pop()
+                self.purpose = False
+            elif self.frame.moving and self._ends(at + 1):
                 self.frame.leads = self.frame.moving[-1] if self.frame.moving[-1].names_part else None
                 if self.frame.elliptical and self.frame.leads is not None and not self.frame.placed and self.done:
                     self.done[-1][1].leads = self.frame.leads
@@ -192,9 +216,14 @@ class _Assembler:
             self.frame.verbs.append("leave")
             self.role = "moving"
             return
+        if self.role == "spanned" or (token.text in SPANS and self.frame.axes and not self.frame.targets):
+            self.role = "axis"
+            return
+        if value == "meet" and self.frame.negated:
+            return
         if value == "meet":
             self.frame.verbs.append("meet")
-            self.role = "target"
+            self.role = "target" if self.frame.moving or self.purpose else "moving"
             return
         if self._begins_clause(token):
             grasped = self.frame.moving if self.frame.verbs == ["grasp"] and not self.frame.placed else []
@@ -202,15 +231,22 @@ class _Assembler:
                 self.frame.verbs = []
             else:
                 self._close()
+        self.shaping = value == "make"
         if value == "halve":
             self.frame.fractions.append("half")
         if value == "quarter":
             self.frame.fractions.append("quarter")
         self.frame.verbs.append(value)
+        if value == "cover":
+            self.role = "target"
+            return
         self.role = "target" if self.role == "target" and self.purpose else "moving"
 
     def _begins_clause(self, token: Token) -> bool:
         frame = self.frame
+        explains = token.form == "ing" and not frame.specific and (frame.fractions or frame.goals or frame.axes)
+        if explains:
+            self.purpose = True
         if self.purpose or not (frame.verbs or frame.moving or frame.placed or frame.fractions):
             return False
         if frame.negated and not frame.verbs:
@@ -225,7 +261,11 @@ class _Assembler:
 
     def _add_phrase(self, phrase: NounPhrase, after: int) -> None:
         self.garments += phrase.garments
+        self.shaping = False
         frame = self.frame
+        if self.spanning and self.joined:
+            frame.axes.append(phrase)
+            return
         if self.role == "target":
             if phrase.noun == "crease":
                 self.role = "axis"
@@ -246,18 +286,19 @@ class _Assembler:
 
     def _add_moving(self, phrase: NounPhrase, after: int) -> None:
         frame = self.frame
+        if phrase.noun in SEAMS or (phrase.noun == "crease" and (self.purpose or not frame.placed)):
+            frame.axes.append(phrase)
+            self.role = "axis" if phrase.noun == "crease" else "moving"
+            return
         subject_of_meet = after < len(self.tokens) and self.tokens[after].is_("verb", "meet")
         if frame.axes and frame.axes[-1].noun == "crease" and phrase.names_part and not self.joined:
             frame.axes.append(phrase)
-        elif self.purpose and frame.specific:
+        elif (self.purpose and frame.specific) or (frame.negated and frame.moving and phrase.pronoun == "it"):
             frame.restated.append(phrase)
         elif self._opens_ellipsis(phrase) and not subject_of_meet:
             self._close()
             self.frame.elliptical = True
             self.frame.moving.append(phrase)
-        elif phrase.noun == "crease" and not frame.placed:
-            frame.axes.append(phrase)
-            self.role = "axis"
         else:
             frame.moving.append(phrase)
 
@@ -280,18 +321,21 @@ class _Assembler:
                 self.role = "target"
             else:
                 self.frame.directions.append("over")
-        elif value == "to" and follows:
+        elif value == "to" and (follows or self._described(at)):
             self.role = "axis" if self.role == "axis" or self._inside_axis() else "target"
         elif value in ("along", "down"):
-            described = at + 1 < len(self.tokens) and self.tokens[at + 1].category == "manner"
-            if follows or (described and starts_noun_phrase(self.tokens, at + 2)):
+            if (follows or self._described(at)) and self.role != "target":
                 self.role = "axis"
         elif value == "from":
             self.frame.from_source = not self.frame.axes
+        elif value == "with" and "meet" in self.frame.verbs:
+            self.role = "target"
         elif value == "with":
-            self.role = "target" if "meet" in self.frame.verbs or self.frame.directions else self.role
+            self.purpose = self.purpose or (follows and not self.frame.same)
+        elif value == "between":
+            self.role, self.spanning = "axis", True
         elif value == "into":
-            pass
+            self._on_into(at)
         elif value == "until":
             self.purpose = True
             self.role = "moving"
@@ -302,6 +346,43 @@ class _Assembler:
         elif value == "in":
             self.role = "axis"
 
+    def _described(self, at: int) -> bool:
+        """``to the horizontal centre line``: a manner before the noun phrase."""
+        return (
+            at + 1 < len(self.tokens)
+            and self.tokens[at + 1].category == "manner"
+            and starts_noun_phrase(self.tokens, at + 2)
+        )
+
+    def _on_into(self, at: int) -> None:
+        """``into the middle`` is a place, ``into a triangle`` a shape."""
+        ahead = at + 1
+        while ahead < len(self.tokens) and self.tokens[ahead].category in ("side", "number"):
+            ahead += 1
+        if ahead < len(self.tokens) and self.tokens[ahead].is_("noun") and not self.tokens[ahead].is_("noun", *SHAPES):
+            self.role = "target"
+        else:
+            self.shaping = True
+
+    def _shape(self, at: int) -> bool:
+        """Whether the noun here is a shape to be made."""
+        return self.shaping and self.tokens[at].is_("noun", *SHAPES)
+
+    def _on_noun(self, token: Token, at: int) -> None:
+        self.frame.goals.append({"result": "strip"}.get(token.value, token.value))
+        self.shaping = False
+
+    def _side_before_side(self, at: int) -> bool:
+        """``left before right``."""
+        return (
+            at + 2 < len(self.tokens)
+            and self.tokens[at].category == self.tokens[at + 2].category == "side"
+            and self.tokens[at + 1].text == "before"
+        )
+
+    def _lead(self, phrase: NounPhrase) -> None:
+        self.frame.leads = phrase
+
     def _centre(self, at: int) -> bool:
         return self.tokens[at].is_("noun", "centre", "midline")
 
@@ -310,11 +391,9 @@ class _Assembler:
         return not self.frame.moving
 
     def _inside_axis(self) -> bool:
-        return len(self.frame.axes) >= 1 and self.frame.axes[0].noun in ("crease", "diagonal", "armpit")
+        return bool(self.frame.axes) and self.frame.axes[0].noun in ("crease", "diagonal", "armpit")
 
     def _on_dir(self, token: Token, at: int) -> None:
-        if token.value == "out" and token.text == "out":
-            return
         self.frame.directions.append(token.value)
 
     def _on_frac(self, token: Token, at: int) -> None:
@@ -326,11 +405,18 @@ class _Assembler:
         self.frame.manners.append(token.value)
 
     def _on_goal(self, token: Token, at: int) -> None:
+        if token.value in ("square", "rectangle") and token.text == token.value and not self.shaping:
+            self.garments.append(token.value)
+            return
         self.frame.goals.append(token.value)
+        self.shaping = self.shaping and token.value == "tidy"
+
+    def _on_skip(self, token: Token, at: int) -> None:
+        pass
 
     def _on_again(self, token: Token, at: int) -> None:
         if token.value == "same":
-            if not self.frame.empty and self.frame.verbs != ["move"] and self.frame.verbs:
+            if self.frame.verbs or self.frame.moving:
                 self._close()
             self.frame.same = True
         elif token.value == "again":
@@ -346,16 +432,33 @@ class _Assembler:
         if starts_noun_phrase(self.tokens, at + 1):
             self.role = "excluded"
             return
+        if not self._verb_ahead(at + 1):
+            self._on_denied(at)
+            return
         if self.frame.verbs or (self.frame.moving and self.frame.placed):
             self._close()
         self.frame.negated = True
+
+    def _verb_ahead(self, at: int) -> bool:
+        return at < len(self.tokens) and self.tokens[at].category in ("verb", "neg", "only", "again")
+
+    def _on_denied(self, at: int) -> None:
+        """``not from left to right but from bottom to top``: what is denied is dropped only if a *but* replaces it."""
+        rest = self.tokens[at + 1 :]
+        length = next((i for i, token in enumerate(rest) if token.category in ("but", "stop")), None)
+        if length is None or rest[length].category != "but":
+            self.frame.unknown.append(self.tokens[at].text + " " + " ".join(token.text for token in rest[:3]))
+            return
+        self.skip_to = at + 1 + length + 1
 
     def _on_except(self, token: Token, at: int) -> None:
         if at + 1 < len(self.tokens) and self.tokens[at + 1].is_("verb"):
             self._close()
             self.frame.negated = True
-        else:
+        elif starts_noun_phrase(self.tokens, at + 1):
             self.role = "excluded"
+        else:
+            self.frame.unknown.append(token.text)
 
     def _on_only(self, token: Token, at: int) -> None:
         self.frame.only = True
@@ -363,6 +466,10 @@ class _Assembler:
     def _on_join(self, token: Token, at: int) -> None:
         if token.value == "or":
             self.frame.unknown.append("or")
+        elif token.value == "colon" and self.frame.specific:
+            self._close()
+        elif token.value == "colon":
+            self.purpose = bool(self.frame.fractions or self.frame.goals or self.frame.axes)
 
     def _on_but(self, token: Token, at: int) -> None:
         if not self.frame.empty:

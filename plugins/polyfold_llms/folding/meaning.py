@@ -37,6 +37,7 @@ def understand(text: str, garment: Garment) -> Meaning:
     _check_words(request, sentence)
     for wrong, right in sentence.corrections:
         garment.note(f"I read “{wrong}” as “{right}”.")
+    _give_context(request.frames)
     barred = _barred(request, garment)
     start = len(garment.folds)
     frames = _merged([frame for frame in request.frames if not frame.negated])
@@ -75,10 +76,18 @@ def _check_words(request: Request, sentence: Sentence) -> None:
             raise NotUnderstoodError(f"I do not understand “{frame.unknown[0]}”")
 
 
+def _give_context(frames: list[Frame]) -> None:
+    """Tell every clause which noun was mentioned last before it, for *the right one* and *the other*."""
+    last = None
+    for frame in frames:
+        frame.context = last
+        mentioned = [*frame.moving, *frame.excluded, *frame.axes]
+        last = next((phrase for phrase in mentioned if phrase.noun), last)
+
+
 def _barred(request: Request, garment: Garment) -> set[tuple[str, str]]:
     """Parts that must stay where they are."""
     barred: set[tuple[str, str]] = set()
-    last_noun = None
     for frame in request.frames:
         phrases = list(frame.excluded)
         if frame.negated:
@@ -88,13 +97,14 @@ def _barred(request: Request, garment: Garment) -> set[tuple[str, str]]:
                 raise NotUnderstoodError("it says not to fold; nothing is left to do")
             phrases += frame.moving
         for phrase in phrases:
-            context = last_noun if phrase.noun is None else phrase
+            context = next((p for p in frame.moving if p.noun), frame.context)
+            if phrase.noun is None and context is not None:
+                phrase = replace(phrase, noun=context.noun)
             probe = Garment(garment.kind, garment.family, list(garment.folds))
             found = parts_of(phrase, probe, "moving", context)
             if not found:
                 raise NotUnderstoodError(f"it is unclear what to leave out: “{phrase.text}”")
             barred |= {(part.what, part.which) for part in found}
-        last_noun = next((p for p in frame.moving if p.noun), last_noun)
     return barred
 
 
@@ -112,7 +122,7 @@ def _merged(frames: list[Frame]) -> list[Frame]:
 
 def _continues(previous: Frame, frame: Frame) -> bool:
     pronoun = bool(frame.moving) and all(not p.names_part and not p.garments for p in frame.moving)
-    if previous.specific and not previous.placed and not previous.fractions and not previous.goals:
+    if previous.specific and not (previous.targets or previous.directions or previous.fractions or previous.goals):
         return not frame.specific and (pronoun or not frame.moving) and frame.placed and not frame.fractions
     return False
 
@@ -120,14 +130,16 @@ def _continues(previous: Frame, frame: Frame) -> bool:
 def _joined(first: Frame, second: Frame) -> Frame:
     return replace(
         second, moving=first.moving, verbs=first.verbs + second.verbs, leads=first.leads or second.leads,
-        excluded=first.excluded + second.excluded,
+        excluded=first.excluded + second.excluded, axes=first.axes + second.axes, manners=first.manners + second.manners,
     )  # fmt: skip
 
 
 def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> None:
     explicit = any(_explicit(frame) for frame in frames)
     previous: Frame | None = None
-    for frame in frames:
+    for number, frame in enumerate(frames):
+        if _describes(frame, frames[number + 1 :]):
+            continue
         if not _explicit(frame) and explicit and not frame.goals and not frame.fractions:
             if previous is None or not (frame.same or frame.again):
                 continue
@@ -143,6 +155,12 @@ def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> No
     if not garment.folds:
         for fold in fold_for_goal(garment, "default", steps):
             garment.folds.append(fold)
+
+
+def _describes(frame: Frame, later: list[Frame]) -> bool:
+    """Whether the clause only names what the following ones spell out: *like a cupboard: both edges to the middle*."""
+    named = set(frame.manners) & {"cupboard", "envelope"} or set(frame.goals) & {"envelope"}
+    return bool(named) and not frame.specific and any(f.specific for f in later[:1])
 
 
 def _explicit(frame: Frame) -> bool:

@@ -143,6 +143,8 @@ def _reading(noun: str | None, phrase: NounPhrase, garment: Garment) -> str:
 
 
 def _sleeves(phrase: NounPhrase, garment: Garment, role: str, noun: str | None) -> list[Part]:
+    if phrase.number not in (None, 1, 2):
+        raise NotUnderstoodError(f"a {garment.spoken} has two sleeves, not {phrase.number}")
     sides = [side for group in phrase.sides for side in sorted(group) if side in ("left", "right")]
     if sides:
         return [Part("sleeve", side) for side in sides]
@@ -203,6 +205,8 @@ def _unsided_corners(phrase: NounPhrase, garment: Garment, role: str) -> list[st
         raise NotUnderstoodError("it is unclear which of the other corners is meant; say left or right, top or bottom")
     if phrase.number == 4 or phrase.quantity in ("all", "each") or (phrase.plural and phrase.number is None):
         return list(CORNERS)
+    if phrase.number == 2 and last is not None and OPPOSITE_CORNER[last] not in moved:
+        return [corner for corner in CORNERS if corner not in (last, OPPOSITE_CORNER[last])]
     if phrase.number == 1 or phrase.quantity == "one" or (not phrase.plural and phrase.number is None):
         garment.note(f"The instruction leaves open which corner; I take the {left[0].replace('_', ' ')} one.")
         return left[:1]
@@ -220,6 +224,8 @@ def _edges(phrase: NounPhrase, garment: Garment, role: str, noun: str | None) ->
                     "a straight fold takes both leg ends along; one leg can't be folded up on its own"
                 )
         return [Part("edge", fixed)]
+    if phrase.number is not None and phrase.number > (2 if noun == "leg" else 4):
+        raise NotUnderstoodError(f"a {garment.spoken} does not have {phrase.number} of these")
     if noun == "leg" and not phrase.sides and phrase.quantity not in ("other", "opposite"):
         if phrase.plural or phrase.quantity or phrase.number == 2:
             return [Part("edge", "left"), Part("edge", "right")]

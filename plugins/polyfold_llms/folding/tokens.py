@@ -15,6 +15,41 @@ NUMBERS = {
     "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9,
     "ten": 10, "dozen": 12, "twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "hundred": 100, "thousand": 1000,
 }  # fmt: skip
+MISSPELT = {
+    "teh": "the",
+    "hte": "the",
+    "adn": "and",
+    "nad": "and",
+    "lfet": "left",
+    "letf": "left",
+    "tot": "to",
+    "fo": "of",
+    "bot": "both",
+    "boht": "both",
+    "flod": "fold",
+    "foled": "fold",
+    "hafl": "half",
+    "haf": "half",
+    "sleve": "sleeve",
+    "rigt": "right",
+    "rihgt": "right",
+    "righ": "right",
+    "botom": "bottom",
+    "bottem": "bottom",
+    "midle": "middle",
+    "tshrit": "tshirt",
+    "tshir": "tshirt",
+    "leggs": "legs",
+    "pans": "pants",
+    "hemm": "hem",
+    "conrer": "corner",
+    "coner": "corner",
+    "sqare": "square",
+    "thrid": "third",
+    "lef": "left",
+    "ontop": "on top",
+}
+"""Short words and double slips that one edit on a long word does not reach."""
 IRREGULAR = {
     "brought": "bring", "took": "take", "taken": "take", "laid": "lay", "swung": "swing", "sent": "send",
     "bent": "bend", "met": "meet", "kept": "keep", "left": "left", "made": "make", "drawn": "draw", "slid": "slide",
@@ -28,6 +63,10 @@ IRREGULAR = {
 COUNTED = re.compile(
     r"\b(?:in|with|using|within|by|takes?)\s+(?:just |only |exactly )?(?:a total of )?(\w+)\s+"
     r"(?:\w+ )?(?:steps?|moves?|folds|stages?|foldings?|movements?|motions?|operations?|goes|actions?)\b"
+)
+SIZE = re.compile(
+    r"(?:\b(?:in|to|into|down to) )?(?:\b(?:a|an|one|its) )?\b(half|third|quarter|fourth|eighth) (?:of )?(?:the |its |their |it's )?"
+    r"(?:\w+ )?(?:size|area|footprint)\b"
 )
 TIMES = re.compile(r"\b(\d+|[a-z]+)\s+(?:more |separate |whole )?times\b(?! smaller)")
 
@@ -78,10 +117,12 @@ def _plain(text: str) -> str:
     text = re.sub(r"can(?:no|')t\b", "can not", text)
     text = re.sub(r"n't\b", " not", text).replace("dont ", "do not ")
     text = re.sub(r"'(?:s|ve|ll|d|re|m)\b", "", text).replace("s' ", "s ")
+    text = re.sub(r"(?<!\w)-(?=\d)", "minus ", text)
     text = re.sub(r"\b(?:one|1)\s*/\s*4\b|\b1/4\b", " quarter ", text)
     text = re.sub(r"\b1/3\b", " third ", text)
     text = re.sub(r"\b1/2\b", " half ", text)
     text = re.sub(r"\b(\d+)(?:x)\b", r"\1 times", text)
+    text = SIZE.sub(r" in \1s ", text)
     text = re.sub(r"\bt-?shirt", "tshirt", text)
     return text.replace("-", " ").replace("/", " ").replace('"', " ").replace("centre's", "centre")
 
@@ -127,6 +168,9 @@ def _known(word: str) -> bool:
 
 def _spell(word: str, corrections: list[tuple[str, str]]) -> str:
     """The word itself if known, else the one known word within a single edit; short words are left alone."""
+    if word in MISSPELT and not _known(word):
+        corrections.append((word, MISSPELT[word]))
+        return MISSPELT[word]
     if len(word) < 4 or not word.isalpha() or _known(word) or word.startswith(("stepcount", "timescount")):
         return word
     shortest = 5 if len(word) > 4 else 4
@@ -134,6 +178,8 @@ def _spell(word: str, corrections: list[tuple[str, str]]) -> str:
     singular = word[:-1] if word.endswith("s") else ""
     if not near and len(singular) >= 5:
         near = sorted({k + "s" for k in _vocabulary() if len(k) >= 5 and _one_edit(singular, k, False)})
+    if len(near) > 1:
+        near = [known for known in near if known[0] == word[0] and len(known) == len(word)]
     if len(near) != 1:
         return word
     corrections.append((word, near[0]))
@@ -167,7 +213,9 @@ def _match(words: list[str], at: int) -> tuple[Token | None, int]:
     for name, category in (("stepcount", "steps"), ("timescount", "times")):
         if word.startswith(name):
             return Token(category, word.removeprefix(name), word), 1
-    if word in ".;:!?()":
+    if word == ":":
+        return Token("join", "colon", word), 1
+    if word in ".;!?()":
         return Token("stop", word, word), 1
     if word == ",":
         return Token("join", "comma", word), 1
@@ -199,7 +247,7 @@ def _allowed(category: str, form: str) -> bool:
     """Only nouns have plurals and only verbs have -ing and -ed."""
     if form == "base":
         return True
-    return category == "verb" or (form == "plural" and category in ("noun", "garment", "pronoun"))
+    return category == "verb" or (form == "plural" and category in ("noun", "garment"))
 
 
 def _fits(words: list[str], at: int, phrase: tuple[str, ...]) -> str | None:
