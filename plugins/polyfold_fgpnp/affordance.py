@@ -81,10 +81,11 @@ def fold_region(fold_line: FoldLine, scene: Scene) -> FoldRegion:
     """
     if not fold_line.length > 0:
         raise PlanError("the fold line's start and end coincide; give two distinct points")
-    if span_on_mask(scene.mask, fold_line.start, fold_line.end) is None:
+    cloth = _largest_blob(scene.mask)
+    if span_on_mask(cloth, fold_line.start, fold_line.end) is None:
         raise PlanError("the fold line misses the cloth, so nothing can be folded; move the line onto the cloth")
-    y, x = np.nonzero(scene.mask)
-    depth = np.zeros(scene.mask.shape)
+    y, x = np.nonzero(cloth)
+    depth = np.zeros(cloth.shape)
     depth[y, x] = fold_line.distance(np.column_stack([x, y]))
     if depth.max() < LEAST_DEPTH_PX:
         raise PlanError(
@@ -102,6 +103,14 @@ def fold_region(fold_line: FoldLine, scene: Scene) -> FoldRegion:
         distances=distances,
         box_area=_box_area(pixels, fold_line),
     )
+
+
+def _largest_blob(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The piece that the contour runs around; stray pixels elsewhere would pass for a flap far from the line."""
+    import cv2
+
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
+    return mask if count <= 2 else labels == 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
 
 
 def _without_slivers(depth: Floats) -> NDArray[np.bool_]:

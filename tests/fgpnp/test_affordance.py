@@ -76,6 +76,13 @@ def test_region_leaves_out_a_sliver_that_the_line_cuts_off_elsewhere():
     assert region.fold_line.start[1] < 200
 
 
+def test_stray_pixels_are_no_cloth():
+    scene = scene_of(model_of(SQUARE))
+    clean = best_pair(fold_region(FoldLine((200, 350), (200, 50)), scene), 0.04)
+    scene.mask[195:205, 2:8] = True
+    assert near(best_pair(fold_region(FoldLine((200, 350), (200, 50)), scene), 0.04), *clean, within=1)
+
+
 def test_region_keeps_both_of_two_legs():
     legs = {
         "a": (100, 350), "b": (100, 50), "c": (300, 50), "d": (300, 350), "e": (230, 350), "f": (200, 150),
