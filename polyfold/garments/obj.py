@@ -131,12 +131,12 @@ def _read_mesh(path: Path) -> tuple[Floats, Faces]:
     mesh.merge_vertices(merge_tex=True, merge_norm=True)
     mesh.update_faces(mesh.nondegenerate_faces())
     mesh.update_faces(mesh.unique_faces())
-    mesh = _largest_piece(mesh, path)
     _, owners = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
     if (owners > 2).any():
         raise GarmentError(
             f"{path} is not a manifold: {(owners > 2).sum()} edges belong to three faces or more; repair it"
         )
+    mesh = _largest_piece(mesh, path)
     if not mesh.is_winding_consistent:
         trimesh.repair.fix_winding(mesh)
     return np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)

@@ -41,7 +41,7 @@ def mesh_panels(outline: Outline, layers: int, edge_length: float) -> tuple[Mesh
     sewn = _sewn(len(ring), corners, outline.openings)
     if layers == 1:
         return _one_layer(points, triangles, len(ring)), corners
-    points, triangles = _without_chords(points, triangles, sewn)
+    points, triangles = _without_chords(points, triangles, sewn, edge_length)
     mesh, top = _two_layers(points, triangles, len(ring), sewn)
     return mesh, {name: int(top[index]) for name, index in corners.items()}
 
@@ -195,7 +195,9 @@ def _sewn(ring_size: int, corners: dict[str, int], openings: tuple[tuple[str, st
     return sewn
 
 
-def _without_chords(points: Floats, triangles: Triangles, sewn: NDArray[np.bool_]) -> tuple[Floats, Triangles]:
+def _without_chords(
+    points: Floats, triangles: Triangles, sewn: NDArray[np.bool_], edge_length: float
+) -> tuple[Floats, Triangles]:
     """Remove inner edges between two seam vertices: they would weld front and back together along a line.
 
     They appear where a sharp corner is cut off by one triangle. The edge is turned to the other diagonal if that
@@ -205,7 +207,8 @@ def _without_chords(points: Floats, triangles: Triangles, sewn: NDArray[np.bool_
     on_seam[: len(sewn)] = sewn
     faces = [tuple(int(vertex) for vertex in face) for face in triangles]
     added: list[Floats] = []
-    for a, b in _chords(triangles, on_seam, len(sewn)):
+    chords = _chords(triangles, on_seam, len(sewn))
+    for a, b in chords:
         left = next((k for k, face in enumerate(faces) if _has_edge(face, a, b)), None)
         right = next((k for k, face in enumerate(faces) if _has_edge(face, b, a)), None)
         if left is None or right is None:
@@ -221,7 +224,21 @@ def _without_chords(points: Floats, triangles: Triangles, sewn: NDArray[np.bool_
             added.append((every[a] + every[b])[None] / 2)
             faces[left], faces[right] = (a, middle, c), (middle, b, c)
             faces += [(b, middle, d), (middle, a, d)]
-    return np.vstack([points, *added]), np.array(faces, np.int32)
+    points, triangles = np.vstack([points, *added]), np.array(faces, np.int32)
+    return (_relaxed(points, triangles, len(sewn), edge_length) if chords else points), triangles
+
+
+def _relaxed(points: Floats, triangles: Triangles, ring_size: int, edge_length: float) -> Floats:
+    """The inner points near the outline evened out without changing the triangles, as far as none turns over."""
+    import shapely
+
+    polygon = shapely.Polygon(points[:ring_size])
+    for _ in range(SMOOTHING_ROUNDS):
+        moved = _smoothed(points, triangles, ring_size, polygon, edge_length)
+        if not _well_shaped(moved, triangles, least_degrees=10.0):
+            break
+        points = moved
+    return points
 
 
 def _chords(triangles: Triangles, on_seam: NDArray[np.bool_], ring_size: int) -> list[tuple[int, int]]:

@@ -59,7 +59,7 @@ def find_cloth(
         )
     if threshold is None:
         _check_clear(distance, limit, area, int(cleaned.sum()))
-    if all(edge.mean() > 0.5 for edge in (mask[0], mask[-1], mask[:, 0], mask[:, -1])):
+    if all(edge.mean() > 0.02 for edge in (mask[0], mask[-1], mask[:, 0], mask[:, -1])):
         raise GarmentError(
             "what stands out touches all four borders of the picture; show the whole cloth with background around it"
         )
@@ -101,7 +101,7 @@ def _separating_threshold(distance: NDArray[np.float32], noise: float) -> float:
 
     scaled = np.clip(distance * (255.0 / NEAR_COLOURS), 0, 255).astype(np.uint8)
     otsu, _ = cv2.threshold(scaled, 0, 255, cv2.THRESH_BINARY | cv2.THRESH_OTSU)
-    threshold = otsu * NEAR_COLOURS / 255.0
+    threshold = max(otsu * NEAR_COLOURS / 255.0, 1.0)
     cloth, background = distance[distance > threshold], distance[distance <= threshold]
     if not len(cloth) or float(np.median(cloth)) - float(np.median(background)) < max(15.0, 4.0 * noise):
         raise GarmentError(TOO_ALIKE)

@@ -187,35 +187,41 @@ def _finely(ring: Floats, spacing: float) -> Floats:
 def _places_on(ring: Floats, corners: Floats, pattern: Pattern) -> list[int]:
     """For each corner an index into the clockwise ring, in the pattern's order around it, as near as that allows.
 
-    The first corner goes to its nearest point; the others are placed by dynamic programming, which keeps two corners
-    that lie close together from changing places.
+    The corner that is farthest from the others goes to its nearest point; the others are placed by dynamic
+    programming, which keeps two corners that lie close together from changing places.
     """
-    size = np.ptp(ring, axis=0).max()
-    first = int(np.argmin(np.hypot(*(ring - corners[0]).T)))
-    turned = np.roll(ring, -first, axis=0)
-    cost = np.square(turned[None] - corners[1:, None]).sum(-1)
-    gap = 3
-    best = np.full(cost.shape, np.inf)
-    best[0, gap:] = cost[0, gap:]
-    came_from = np.zeros(cost.shape, int)
-    for corner in range(1, len(cost)):
-        running = np.minimum.accumulate(best[corner - 1])
-        where = np.maximum.accumulate(np.where(best[corner - 1] <= running, np.arange(len(turned)), 0))
-        best[corner, gap:] = running[:-gap] + cost[corner, gap:]
-        came_from[corner, gap:] = where[:-gap]
-    best[-1, len(turned) - gap :] = np.inf
-    places = [int(np.argmin(best[-1]))]
-    for corner in range(len(cost) - 1, 0, -1):
-        places.append(int(came_from[corner, places[-1]]))
-    order = [0, *places[::-1]]
-    distance = np.hypot(*(turned[order] - corners).T)
-    if not np.isfinite(best[-1].min()) or distance.max() > FAR * size:
-        worst = pattern.corners[int(np.argmax(distance))]
+    apart = np.hypot(*(corners[:, None] - corners[None]).transpose(2, 0, 1)) + np.diag(np.full(len(corners), np.inf))
+    lead = int(np.argmax(apart.min(1)))
+    first = int(np.argmin(np.hypot(*(ring - corners[lead]).T)))
+    turned, others = np.roll(ring, -first, axis=0), np.roll(corners, -lead, axis=0)
+    order = [0, *_in_order(np.square(turned[None] - others[1:, None]).sum(-1))]
+    distance = np.hypot(*(turned[order] - others).T)
+    if distance.max() > FAR * np.ptp(ring, axis=0).max():
+        worst = pattern.corners[(int(np.argmax(distance)) + lead) % len(corners)]
         raise GarmentError(
             f"the keypoint {worst} lies far from the outline, or the keypoints do not go round it clockwise "
             f"({', '.join(pattern.corners[:3])}, ...); check the keypoints, and that the picture is not mirrored"
         )
-    return [(place + first) % len(ring) for place in order]
+    places = [(place + first) % len(ring) for place in order]
+    return places[-lead:] + places[:-lead] if lead else places
+
+
+def _in_order(cost: Floats, gap: int = 3) -> list[int]:
+    """The cheapest increasing columns, one per row, at least ``gap`` apart and away from both ends."""
+    rows, columns = cost.shape
+    best = np.full(cost.shape, np.inf)
+    best[0, gap:] = cost[0, gap:]
+    came_from = np.zeros(cost.shape, int)
+    for row in range(1, rows):
+        cheapest = np.minimum.accumulate(best[row - 1])
+        where = np.maximum.accumulate(np.where(best[row - 1] <= cheapest, np.arange(columns), 0))
+        best[row, gap:] = cheapest[:-gap] + cost[row, gap:]
+        came_from[row, gap:] = where[:-gap]
+    best[-1, columns - gap :] = np.inf
+    chosen = [int(np.argmin(best[-1]))]
+    for row in range(rows - 1, 0, -1):
+        chosen.append(int(came_from[row, chosen[-1]]))
+    return chosen[::-1]
 
 
 def _smoothed(piece: Floats, sigma: float) -> Floats:
