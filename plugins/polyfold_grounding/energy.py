@@ -72,7 +72,13 @@ class Energy:
         evidence = self.evidence
         delta = self.delta * evidence.scale
         return function(
-            np.ascontiguousarray(vertices), self._covered, evidence.samples, evidence.field, evidence.margin, delta, _SAMPLES
+            np.ascontiguousarray(vertices),
+            self._covered,
+            evidence.samples,
+            evidence.field,
+            evidence.margin,
+            delta,
+            _SAMPLES,
         )
 
 

@@ -17,7 +17,14 @@ __all__ = ["FlatFit", "Start", "fit_flat", "spread_starts"]
 
 Floats = NDArray[np.float64]
 
-COARSE, FINE, FREE, STARTS, APART = 6.0, 6.0, 4, 8, 30.0
+_STARTS, _APART = 8, np.radians(30.0)
+"""How many headings go through the symmetric stage, and their least distance."""
+
+_FREE = 4
+"""How many of them go through the free stage."""
+
+_DELTA = 6.0
+"""Distance [px at scale 1] beyond which a contour sample counts linearly."""
 
 _SHARP = 30.0
 """Least turn of the outline at a protruding corner [deg]."""
@@ -56,15 +63,15 @@ def fit_flat(template: Template, evidence: Evidence, rotations: int = 24) -> lis
     Returns:
         Explanations with different headings, best first; at least one.
     """
-    coarse, fine = Energy(template, evidence, COARSE), Energy(template, evidence, FINE)
+    objective = Energy(template, evidence, _DELTA)
     symmetric = []
     for start in spread_starts(template, evidence, rotations):
-        vertices, energy = levenberg_marquardt(coarse, template.generator, start.vertices, 15)
+        vertices, energy = levenberg_marquardt(objective, template.generator, start.vertices, 15)
         symmetric.append(FlatFit(vertices, energy, start.heading))
     symmetric.sort(key=lambda fit: fit.energy)
     free = []
-    for fit in symmetric[:FREE]:
-        vertices, energy = levenberg_marquardt(fine, FreeVertices(), fit.vertices, 40)
+    for fit in symmetric[:_FREE]:
+        vertices, energy = levenberg_marquardt(objective, FreeVertices(), fit.vertices, 40)
         free.append(FlatFit(on_contour(template, vertices, evidence), energy, fit.heading))
     return sorted(free, key=lambda fit: fit.energy)
 
@@ -84,20 +91,22 @@ def on_contour(template: Template, vertices: Floats, evidence: Evidence) -> Floa
     distance = np.linalg.norm(offsets, axis=2)
     reach = _ROUNDING * evidence.scale
     along = (offsets * outward[:, None]).sum(2)
-    merit = np.where((sharp & convex)[:, None], along - 0.5 * np.sqrt(np.maximum(distance**2 - along**2, 0.0)), -distance)
+    merit = np.where(
+        (sharp & convex)[:, None], along - 0.5 * np.sqrt(np.maximum(distance**2 - along**2, 0.0)), -distance
+    )
     chosen = np.where(distance < reach, merit, -np.inf).argmax(1)
     moved = (distance.min(1) < reach) & ~np.isin(template.names, template.covered)
     return np.where(moved[:, None], evidence.contour[chosen], vertices)
 
 
 def spread_starts(template: Template, evidence: Evidence, rotations: int) -> list[Start]:
-    """The best starts at least 40 degrees apart, four at most."""
-    return _apart(_starts(template, evidence, rotations), STARTS, np.radians(APART))
+    """The best starts whose headings differ."""
+    return _apart(_starts(template, evidence, rotations), _STARTS, _APART)
 
 
 def _starts(template: Template, evidence: Evidence, rotations: int) -> list[Start]:
     """Every canonical shape at every rotation, with the cloth's area and centroid, best first."""
-    energy = Energy(template, evidence, 6.0)
+    energy = Energy(template, evidence, _DELTA)
     area, centre = abs(polygon_area(evidence.contour)), _centroid(evidence.contour)
     # The names of a cyclic template are handed out later, so that a quarter turn covers all of its headings.
     span = np.pi / 2 if template.cyclic else 2 * np.pi

@@ -29,9 +29,9 @@ def fit_flat_by_pattern(template: Template, evidence: Evidence, rotations: int =
         vertices, value = pattern_search(energy, template.generator, start.vertices)
         symmetric.append(FlatFit(vertices, value, start.heading))
     symmetric.sort(key=lambda fit: fit.energy)
-    fine, free = Energy(template, evidence, 3.0), []
+    free = []
     for fit in symmetric[:2]:
-        vertices, value = pattern_search(fine, FreeVertices(), fit.vertices)
+        vertices, value = pattern_search(energy, FreeVertices(), fit.vertices)
         free.append(FlatFit(vertices, value, fit.heading))
     return sorted(free, key=lambda fit: fit.energy)
 

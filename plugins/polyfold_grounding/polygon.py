@@ -15,7 +15,9 @@ __all__ = ["PolygonGrounding"]
 
 
 class PolygonGrounding:
-    """Fits the garment's template to the silhouette, then follows it. Implements :class:`polyfold.interfaces.Grounding`.
+    """Fits the garment's template to the silhouette, then follows it.
+
+    Implements :class:`polyfold.interfaces.Grounding`.
 
     The first picture is fitted from all rotations; corners of squares and rectangles are named there, by the edge
     nearest the image's top, and keep their names. After a fold the previous model is folded along the line and

@@ -21,9 +21,9 @@ __all__ = ["Refit", "Silhouette", "refit_fold", "register"]
 
 Floats = NDArray[np.float64]
 
-_WEIGHT = 30.0
+_WEIGHT = 3.0
 
-_SIGMAS = np.array([15.0, 15.0, np.radians(8.0), 8.0, np.radians(6.0)])
+_SIGMAS = np.array([8.0, 8.0, np.radians(4.0), 3.0, np.radians(1.5)])
 """How far a fold usually moves the garment, and misses its line: shift [px at scale 1], turn, offset [px], turn."""
 
 _FAR = 1e5

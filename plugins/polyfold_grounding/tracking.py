@@ -24,6 +24,9 @@ Floats = NDArray[np.float64]
 _BETTER = 0.6
 """A rarer explanation (displaced, fold failed) is believed when its distance is below this share of the usual one."""
 
+_UNREMARKABLE = 2.0
+"""A Chamfer distance [px at scale 1] that needs no rarer explanation."""
+
 _AS_GOOD = 1.15
 """Another explanation with up to this multiple of the energy makes a silhouette ambiguous ..."""
 
@@ -66,7 +69,7 @@ def next_model(model: FoldedModel, line: FoldLine | None, evidence: Evidence, di
         line, silhouette = None, Silhouette(model, None, evidence)
     best, others = _explain(silhouette)
     limit = displaced * evidence.scale
-    if line is not None and best.chamfer > limit:
+    if line is not None and best.chamfer > _UNREMARKABLE * evidence.scale:
         unfolded = Silhouette(model, None, evidence)
         still = _explain(unfolded)[0]
         if still.chamfer < _BETTER * best.chamfer:

@@ -33,7 +33,8 @@ def silhouette(polygons: Sequence[ArrayLike]) -> Floats:
 
     shapes = [shapely.Polygon(p) for p in polygons]
     shapes = [shape if shape.is_valid else shape.buffer(0) for shape in shapes]
-    united = shapely.union_all(shapes)
+    # Snapping to a fine grid keeps nearly coincident edges of stacked layers from confusing the overlay.
+    united = shapely.union_all(shapes, grid_size=1e-3)
     parts = [part for part in getattr(united, "geoms", [united]) if isinstance(part, shapely.Polygon)]
     if not parts or max(part.area for part in parts) <= 0:
         raise GarmentError("the polygon model has no area; its vertices coincide or lie on one line")

@@ -123,7 +123,9 @@ def leg_penalties(ranges: LegRanges) -> list[Penalty]:
         Penalty("position", ("leg_inner_left", "leg_inner_right"), WAIST, *ranges.gap, 0.05),
         ratio_range(("crotch", "leg_inner_left"), ("crotch", "leg_inner_right"), *ranges.likeness, 0.08),
         ratio_range(("waist_left", "leg_outer_left"), ("waist_right", "leg_outer_right"), *ranges.likeness, 0.08),
-        ratio_range(("leg_inner_left", "leg_outer_left"), ("leg_inner_right", "leg_outer_right"), *ranges.likeness, 0.1),
+        ratio_range(
+            ("leg_inner_left", "leg_outer_left"), ("leg_inner_right", "leg_outer_right"), *ranges.likeness, 0.1
+        ),
     ]
     for side, sign in (("left", 1.0), ("right", -1.0)):
         seam = (f"waist_{side}", f"leg_outer_{side}")
