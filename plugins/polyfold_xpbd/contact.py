@@ -11,6 +11,11 @@ from numba import njit
 
 __all__ = ["pair_normals", "resolve_pairs", "update_pairs", "vertex_normals"]
 
+UPPER_SHARE = 0.85
+"""Share of a push that the upper of two layers takes when the lower one rests on the table."""
+CLEAR = 0.5
+"""How far off a sheet something must be to be on one side of it, in thicknesses."""
+
 
 @njit(cache=True, fastmath=True)
 def vertex_normals(x, corners, use, normals):
@@ -40,12 +45,17 @@ def vertex_normals(x, corners, use, normals):
 
 
 @njit(cache=True, fastmath=True)
-def _side_of(normals, i, dx, dy, dz, d2, radius_2):
-    """On which side of particle i's disc the offset lies (+-1), and whether it is over the disc."""
+def _side_of(normals, i, dx, dy, dz, d2, radius_2, clear):
+    """On which side of particle i's disc the offset lies (+-1, 0 if that isn't clear), and whether it is over it."""
     nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
     along = nx * dx + ny * dy + nz * dz
     flat_2 = nx * nx + ny * ny + nz * nz + np.float32(1e-12)
-    return np.int8(1) if along >= 0 else np.int8(-1), d2 - along * along / flat_2 < radius_2
+    over = d2 - along * along / flat_2 < radius_2
+    if along > clear:
+        return np.int8(1), over
+    if along < -clear:
+        return np.int8(-1), over
+    return np.int8(0), over
 
 
 @njit(cache=True, fastmath=True)
@@ -111,6 +121,8 @@ def update_pairs(
     all_start, all_members = _sort_into_cells(cell_of, cells, np.ones(count, np.bool_))
     moved_start, moved_members = _sort_into_cells(cell_of, cells, moved)
     near = np.empty(count, np.uint32)
+    # A sheet that is met edge-on has no side yet; guessing one would lock it in.
+    clear = np.float32(CLEAR) * thickness
     pairs = 0
     for i in range(count):
         start[i] = pairs
@@ -138,13 +150,13 @@ def update_pairs(
                 continue
             dx, dy, dz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
             d2 = dx * dx + dy * dy + dz * dz
-            side_i, over_i = _side_of(normals, i, dx, dy, dz, d2, radius_2)
-            side_j, over_j = _side_of(normals, j, -dx, -dy, -dz, d2, radius_2)
+            side_i, over_i = _side_of(normals, i, dx, dy, dz, d2, radius_2, clear)
+            side_j, over_j = _side_of(normals, j, -dx, -dy, -dz, d2, radius_2, clear)
             if over_i or over_j:
                 for k in range(old_start[i], old_start[i + 1]):
                     if old_j[k] == j:
-                        side_i = old_side[k, 0] if over_i else side_i
-                        side_j = old_side[k, 1] if over_j else side_j
+                        side_i = old_side[k, 0] if over_i and old_side[k, 0] != 0 else side_i
+                        side_j = old_side[k, 1] if over_j and old_side[k, 1] != 0 else side_j
                         break
             pj[pairs] = j
             side[pairs, 0], side[pairs, 1] = side_i, side_j
@@ -174,14 +186,19 @@ def pair_normals(normals, start, pj, side, pair_normal):
 
 
 @njit(cache=True, fastmath=True)
-def resolve_pairs(x, previous, mobility, start, pj, pair_normal, radius, thickness, friction, relaxation, cap):
+def resolve_pairs(
+    x, previous, mobility, supported, rests, start, pj, pair_normal,
+    radius, thickness, friction, relaxation, cap, recovery,
+):  # fmt: skip
     """Push overlapping discs apart and hold them by Coulomb friction.
 
-    Only the part of a push that stops an approach may change velocities; the rest moves ``previous`` along, so that
-    resolving an overlap never throws cloth into the air.
+    A push changes velocities only as far as it stops an approach and opens the overlap by ``recovery`` per substep; the
+    rest moves ``previous`` along, so that resolving an overlap never throws cloth into the air. ``supported`` says which
+    particles rested on the table, directly or on others, in the substep before; ``rests`` gathers it for the next.
     """
     radius_2 = radius * radius
-    zero = np.float32(0.0)
+    zero, half = np.float32(0.0), np.float32(0.5)
+    upper_share, upright = np.float32(UPPER_SHARE), np.float32(0.7)
     for i in range(start.shape[0] - 1):
         for p in range(start[i], start[i + 1]):
             j = pj[p]
@@ -198,10 +215,17 @@ def resolve_pairs(x, previous, mobility, start, pj, pair_normal, radius, thickne
                 nx, ny, nz = dx / along, dy / along, dz / along
             elif d2 - along * along > radius_2:
                 continue
-            total = mobility[i] + mobility[j]
-            if total == zero:
+            if mobility[i] + mobility[j] == zero:
                 continue
-            share_i, share_j = mobility[i] / total, mobility[j] / total
+            # What lies on the table can't give way downwards; sharing pushes evenly would let a stack sink into itself.
+            share_j = half
+            if nz > upright and supported[i]:
+                share_j, rests[j] = upper_share, True
+            elif nz < -upright and supported[j]:
+                share_j, rests[i] = np.float32(1.0) - upper_share, True
+            if mobility[i] * mobility[j] == zero:
+                share_j = mobility[j]
+            share_i = np.float32(1.0) - share_j
             push = min(relaxation * (thickness - along), cap)
             mx = (x[j, 0] - previous[j, 0]) - (x[i, 0] - previous[i, 0])
             my = (x[j, 1] - previous[j, 1]) - (x[i, 1] - previous[i, 1])
@@ -210,7 +234,7 @@ def resolve_pairs(x, previous, mobility, start, pj, pair_normal, radius, thickne
             tx, ty, tz = mx - opening * nx, my - opening * ny, mz - opening * nz
             slip = np.sqrt(tx * tx + ty * ty + tz * tz) + np.float32(1e-12)
             hold = min(np.float32(1.0), friction * push / slip)
-            silent = push - min(push, max(-opening, zero))
+            silent = push - min(push, max(-opening, zero) + recovery)
             px, py, pz = push * nx - hold * tx, push * ny - hold * ty, push * nz - hold * tz
             x[j, 0] += share_j * px
             x[j, 1] += share_j * py

@@ -87,9 +87,11 @@ def _hold_back(x, mobility, particles, anchors, lengths):
 
 
 @njit(cache=True, fastmath=True)
-def _table(x, previous, mobility, floor, friction):
+def _table(x, previous, mobility, supported, rests, floor, friction):
     for i in range(x.shape[0]):
         push = floor - x[i, 2]
+        supported[i] = rests[i] or push > np.float32(0.0)
+        rests[i] = False
         if push > np.float32(0.0) and mobility[i] > np.float32(0.0):
             x[i, 2] = floor
             previous[i, 2] = max(previous[i, 2], floor)
@@ -166,6 +168,7 @@ def advance(
     floor, fastest = settings[8], settings[9]
     inverse_dt = np.float32(1.0) / dt
     moved = np.empty(x.shape[0], np.bool_)
+    supported, rests = np.zeros(x.shape[0], np.bool_), np.zeros(x.shape[0], np.bool_)
     for k in range(first, last):
         if clock[0] % BEND_EVERY == 0:
             _bend(x, v, hinges, hinge_weights, np.float32(BEND_EVERY) * dt)
@@ -192,9 +195,10 @@ def advance(
             pair_normals(normals, start, pj, side, pair_normal)
         clock[0] += 1
         resolve_pairs(
-            x, previous, mobility, start, pj, pair_normal, radius, thickness, cloth_friction, relaxation, cap
+            x, previous, mobility, supported, rests, start, pj, pair_normal,
+            radius, thickness, cloth_friction, relaxation, cap, settings[10],
         )
-        _table(x, previous, mobility, floor, table_friction)
+        _table(x, previous, mobility, supported, rests, floor, table_friction)
         energy = _velocities(x, previous, v, inverse_dt)
         if rest_speed > 0:
             clock[1] = clock[1] + 1 if energy < x.shape[0] * rest_speed * rest_speed else 0

@@ -26,6 +26,8 @@ PAIRS_PER_PARTICLE = 64
 """Room in the list of near pairs. Flat stacks have about 10 however high they are; more than this is a blow-up."""
 RELAXATION, LARGEST_PUSH = 0.3, 0.2
 """Share of an overlap resolved per substep, and the most of it in thicknesses."""
+RECOVERY = 0.1
+"""Speed at which overlapping layers come apart [m/s]."""
 TOP_SPEED = 5.0
 """Particles are never faster than this [m/s]."""
 MOVING, SETTLING = 8.0, 20.0
@@ -54,6 +56,7 @@ class Solver:
             [
                 self.dt, radius, config.thickness, PAD * edge_length, config.table_friction, config.cloth_friction,
                 RELAXATION, LARGEST_PUSH * config.thickness, config.thickness / 2, TOP_SPEED,
+                RECOVERY * self.dt,
             ],
             np.float32,
         )  # fmt: skip
