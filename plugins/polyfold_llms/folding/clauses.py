@@ -62,9 +62,9 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
     if frame.leads is not None:
         moving = _led(moving, parts_of(frame.leads, garment, "moving", context))
     folds: list[Fold] = []
-    if moving and not (frame.verbs or frame.placed or frame.fractions or frame.goals or frame.same or previous):
-        if {part.what for part in moving} != {"sleeve"}:
-            raise NotUnderstoodError(f"it names “{frame.moving[0].text}” but not what to do with it")
+    said = frame.verbs or frame.placed or frame.fractions or frame.goals or frame.same or previous
+    if moving and not said and {part.what for part in moving} != {"sleeve"}:
+        raise NotUnderstoodError(f"it names “{frame.moving[0].text}” but not what to do with it")
     if not moving:
         for _ in range(frame.times):
             ahead = replace_folds(garment, folds)
@@ -278,9 +278,9 @@ def _edge(part: Part, clause: Clause, garment: Garment) -> Fold:
     if clause.toward("corner"):
         raise NotUnderstoodError("an edge can't be folded onto a corner; name the opposite edge or the middle")
     _check_direction(edge, clause)
-    if "in" in clause.frame.directions and not clause.frame.fractions and garment.family in ("quad", "tshirt"):
-        if edge in ("left", "right") or garment.family == "quad":
-            return Fold("middle", edge)
+    sideways = garment.family == "tshirt" and edge in ("left", "right")
+    if "in" in clause.frame.directions and not clause.frame.fractions and (sideways or garment.family == "quad"):
+        return Fold("middle", edge)
     if not (clause.frame.directions or clause.frame.fractions or clause.targets or clause.axes):
         garment.note(f"The instruction does not say where to; I fold the {edge} part onto the opposite one.")
     return fold_in_half(garment, edge)

@@ -111,6 +111,10 @@ class _Assembler:
                 self._lead(NounPhrase(sides=(frozenset({token.value}),)))
                 at += 3
                 continue
+            if token.text == "crease" and self.frame.empty and starts_noun_phrase(self.tokens, at + 1):
+                self.frame.verbs.append("fold")
+                at += 1
+                continue
             if starts_noun_phrase(self.tokens, at) and not self._ordinal(at) and not self._shape(at):
                 phrase, at = noun_phrase(self.tokens, at)
                 self._add_phrase(phrase, at)

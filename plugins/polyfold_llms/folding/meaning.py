@@ -130,7 +130,8 @@ def _continues(previous: Frame, frame: Frame) -> bool:
 def _joined(first: Frame, second: Frame) -> Frame:
     return replace(
         second, moving=first.moving, verbs=first.verbs + second.verbs, leads=first.leads or second.leads,
-        excluded=first.excluded + second.excluded, axes=first.axes + second.axes, manners=first.manners + second.manners,
+        excluded=first.excluded + second.excluded, axes=first.axes + second.axes,
+        manners=first.manners + second.manners,
     )  # fmt: skip
 
 
@@ -140,9 +141,9 @@ def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> No
     for number, frame in enumerate(frames):
         if _describes(frame, frames[number + 1 :]):
             continue
-        if not _explicit(frame) and explicit and not frame.goals and not frame.fractions:
-            if previous is None or not (frame.same or frame.again):
-                continue
+        vague = not (_explicit(frame) or frame.goals or frame.fractions)
+        if vague and explicit and (previous is None or not (frame.same or frame.again)):
+            continue
         if frame.goals and explicit and not _explicit(frame) and frame.goals[0] in ("tidy", "store"):
             continue
         wanted = steps if not explicit else None

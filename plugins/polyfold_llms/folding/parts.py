@@ -218,11 +218,9 @@ def _edges(phrase: NounPhrase, garment: Garment, role: str, noun: str | None) ->
     if fixed:
         if noun == "shoulder" and phrase.sides and role == "moving":
             return [Part("edge", side) for group in phrase.sides for side in sorted(group) if side in EDGES]
-        if noun in ("legends", "hem", "cuff") and garment.family == "pants" and phrase.sides and role == "moving":
-            if phrase.sides[0] & {"left", "right"} and len(phrase.sides) == 1:
-                raise NotUnderstoodError(
-                    "a straight fold takes both leg ends along; one leg can't be folded up on its own"
-                )
+        single = len(phrase.sides) == 1 and bool(phrase.sides[0] & {"left", "right"})
+        if noun in ("legends", "hem", "cuff") and garment.family == "pants" and single and role == "moving":
+            raise NotUnderstoodError("a straight fold takes both leg ends along; one leg can't be folded up on its own")
         return [Part("edge", fixed)]
     if phrase.number is not None and phrase.number > (2 if noun == "leg" else 4):
         raise NotUnderstoodError(f"a {garment.spoken} does not have {phrase.number} of these")

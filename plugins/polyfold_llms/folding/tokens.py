@@ -65,7 +65,8 @@ COUNTED = re.compile(
     r"(?:\w+ )?(?:steps?|moves?|folds|stages?|foldings?|movements?|motions?|operations?|goes|actions?)\b"
 )
 SIZE = re.compile(
-    r"(?:\b(?:in|to|into|down to) )?(?:\b(?:a|an|one|its) )?\b(half|third|quarter|fourth|eighth) (?:of )?(?:the |its |their |it's )?"
+    r"(?:\b(?:in|to|into|down to) )?(?:\b(?:a|an|one|its) )?\b(half|third|quarter|fourth|eighth) (?:of )?"
+    r"(?:the |its |their )?"
     r"(?:\w+ )?(?:size|area|footprint)\b"
 )
 TIMES = re.compile(r"\b(\d+|[a-z]+)\s+(?:more |separate |whole )?times\b(?! smaller)")
@@ -256,7 +257,7 @@ def _fits(words: list[str], at: int, phrase: tuple[str, ...]) -> str | None:
         return None
     form = "base"
     for word, wanted in zip(words[at:], phrase, strict=False):
-        forms = {variant: kind for variant, kind in reversed(_variants(word))}
+        forms = dict(reversed(_variants(word)))
         if wanted not in forms:
             return None
         form = forms[wanted]
@@ -268,10 +269,10 @@ def _cut_off(token: Token, words: list[str], after: int) -> bool:
     if after >= len(words):
         return False
     following = {variant for variant, _ in _variants(words[after])}
-    if token.category in ("dir", "manner") and token.text.split()[-1] in ("left", "right", "top", "bottom"):
-        if following & PART_WORDS or "hand" in following:
-            return True
-    if token.category in ("side",) and token.value in ("long", "short") and following & {"sleeved", "sleeve"}:
+    ends_in_side = token.text.split()[-1] in ("left", "right", "top", "bottom")
+    if token.category in ("dir", "manner") and ends_in_side and (following & PART_WORDS or "hand" in following):
+        return True
+    if token.category == "side" and token.value in ("long", "short") and following & {"sleeved", "sleeve"}:
         return True
     return token.category == "frac" and bool(following & {"step", "fold", "move", "time"})
 
