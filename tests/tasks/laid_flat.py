@@ -1,0 +1,28 @@
+"""Shared by the task tests: the suite, and garments laid flat under a camera without a simulator."""
+
+from functools import cache
+
+import numpy as np
+from polyfold_standard.pants import Pants
+from polyfold_standard.rectangle import Rectangle
+from polyfold_standard.square import Square
+from polyfold_standard.tshirt import TShirt
+
+from polyfold.garments import name_by_pose
+from polyfold.geometry import rotate
+from polyfold.tasks import load_suite
+from polyfold.types import Camera, SimState
+
+KINDS = {"square": Square(), "rectangle": Rectangle(), "tshirt": TShirt(), "pants": Pants()}
+SUITE = load_suite("polyfold_standard:tasks/polyfold70.toml")
+
+
+@cache
+def lay(kind, seed=2000, degrees=0.0, edge_length=0.02):
+    """A garment and its state, flat on the table."""
+    garment = KINDS[kind].generate(seed, edge_length)
+    flat = rotate(garment.mesh.vertices, np.radians(degrees))
+    positions = np.column_stack([flat, 0.0025 + 0.005 * garment.mesh.layer])
+    camera = Camera.framing(2 * np.hypot(*flat.T).max() / 0.8)
+    keypoints = name_by_pose(garment.cyclic, garment.keypoints, positions)
+    return garment, SimState(positions, np.zeros_like(positions), keypoints, camera)
