@@ -79,6 +79,7 @@ class Task(BaseModel):
         type: the family it belongs to, such as ``S-Corner``.
         steps: the folds, in order.
         instructions: sentences that ask for it, all meaning the same.
+        split: whether learning baselines may train on it (``seen``) or not (``unseen``); None where nobody decided.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -88,6 +89,7 @@ class Task(BaseModel):
     type: str
     steps: tuple[Fold, ...] = Field(min_length=1)
     instructions: tuple[str, ...] = ()
+    split: Literal["seen", "unseen"] | None = None
 
 
 class Suite(BaseModel):
