@@ -37,18 +37,14 @@ def load_outline(path: str | Path) -> NDArray[np.float64]:
 
 
 def load_mask(path: str | Path) -> NDArray[np.bool_]:
-    """Read a mask, bright where the garment is, bool, shape (H, W).
+    """Read a mask, bright where the garment is, or a cut-out that is transparent elsewhere, bool, shape (H, W).
 
     Raises:
         GarmentError: if the file is no picture, or is empty, full, or bright around the border.
     """
-    from PIL import Image
-
     picture = _opened(Path(path))
-    channel = picture.getchannel("A") if "A" in picture.getbands() else picture.convert("L")
-    if "A" in picture.getbands() and np.asarray(channel).min() == 255:
-        channel = picture.convert("L")
-    mask = np.asarray(channel.convert("L") if isinstance(channel, Image.Image) else channel) > 127
+    cut_out = "A" in picture.getbands() and picture.getchannel("A").getextrema()[0] < 255
+    mask = np.asarray(picture.getchannel("A") if cut_out else picture.convert("L")) > 127
     if not mask.any() or mask.all():
         raise GarmentError(f"the mask {path} is {'full' if mask.any() else 'empty'}; paint the garment white on black")
     if np.concatenate([mask[0], mask[-1], mask[:, 0], mask[:, -1]]).mean() > 0.5:

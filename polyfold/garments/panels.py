@@ -14,6 +14,7 @@ __all__ = ["mesh_panels"]
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.int32]
 
+FINEST, COARSEST = 1 / 600, 1 / 4  # edge length as a share of the garment's longest side
 CLEARANCE = 0.62  # smallest distance of a lattice point from the outline, in edge lengths
 SMOOTHING_ROUNDS = 4
 FLAT = 1e-6  # doubled area, in squared edge lengths, of what joins three points on a straight stretch of the outline
@@ -35,6 +36,7 @@ def mesh_panels(outline: Outline, layers: int, edge_length: float) -> tuple[Mesh
     """
     if layers not in (1, 2):
         raise GarmentError(f"a garment has 1 or 2 layers, not {layers}")
+    _check_edge_length(edge_length, float(np.ptp(outline.points, axis=0).max()))
     outline = outline.counter_clockwise()
     ring, corners = _resampled(outline, edge_length)
     points, triangles = _triangulate(ring, edge_length)
@@ -44,6 +46,14 @@ def mesh_panels(outline: Outline, layers: int, edge_length: float) -> tuple[Mesh
     points, triangles = _without_chords(points, triangles, sewn, edge_length)
     mesh, top = _two_layers(points, triangles, len(ring), sewn)
     return mesh, {name: int(top[index]) for name, index in corners.items()}
+
+
+def _check_edge_length(edge_length: float, size: float) -> None:
+    if not COARSEST * size > edge_length > FINEST * size:
+        raise GarmentError(
+            f"an edge length of {edge_length} m does not suit a garment of {size:.2f} m; "
+            f"choose one between {FINEST * size:.4f} and {COARSEST * size:.2f} m, such as 0.0125"
+        )
 
 
 def _resampled(outline: Outline, edge_length: float) -> tuple[Floats, dict[str, int]]:

@@ -98,6 +98,12 @@ def test_bad_outlines_are_refused_with_what_to_do(outline, layers, edge_length, 
         mesh_panels(outline, layers, edge_length)
 
 
+@pytest.mark.parametrize("edge_length", [0.0, -0.01, float("nan"), 1e-6, 0.2])
+def test_an_edge_length_that_does_not_suit_the_garment_is_refused(edge_length):
+    with pytest.raises(GarmentError, match=r"choose one between 0\.0003 and 0\.05"):
+        mesh_panels(Outline(CIRCLE, {}), 1, edge_length)
+
+
 def test_a_rounding_larger_than_its_edge_is_refused():
     with pytest.raises(GarmentError, match="make it smaller"):
         curved_outline({"a": (0, 0), "b": (0, 1), "c": (1, 0)}, rounding={"a": 0.8})

@@ -141,7 +141,7 @@ def test_legs_that_lie_side_by_side_are_cut_apart():
         ({"outline": [[0, 0], [100, 100], [100, 0], [0, 100]]}, "falls apart"),
         ({"keypoints": {"top_left": (0, 0)}}, "bottom_left, top_right, bottom_right are missing"),
         ({"size_m": 40.0}, "plausible"),
-        ({"edge_length": 0.5}, "finer edge length"),
+        ({"edge_length": 0.5}, "edge length"),
         ({"mirrored": True}, "mirrored"),
         ({"keypoints_nan": True}, "finite pixels"),
     ],
