@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -44,6 +44,8 @@ class Experiment(BaseModel):
     planner: Choice = Choice(name="hierarchical")
     policy: Choice = Choice(name="caso")
     llm: Choice = Choice(name="rules")
+    guidance: Literal["steps", "final"] = "steps"
+    """What agents that need guidance get: accurate subgoals, or the final goal alone."""
 
     @classmethod
     def of(cls, **settings: Any) -> Experiment:
@@ -98,5 +100,7 @@ def to_toml(experiment: Experiment) -> str:
 
     tables: dict[str, Any] = {}
     for name, choice in experiment.model_dump().items():
-        tables[name] = {"name": choice["name"], **choice["params"]} if choice["params"] else choice["name"]
+        if isinstance(choice, dict):
+            choice = {"name": choice["name"], **choice["params"]} if choice["params"] else choice["name"]
+        tables[name] = choice
     return tomli_w.dumps(tables)

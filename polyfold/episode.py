@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from polyfold import plugins
 from polyfold.config import Experiment
-from polyfold.errors import GroundingError, PlanError, PolyfoldError, RefusedError, SimulationError
+from polyfold.errors import ConfigError, GroundingError, PlanError, PolyfoldError, RefusedError, SimulationError
 from polyfold.garments import Garment
+from polyfold.guidance import guidance_for
 from polyfold.interfaces import Agent, Goal, Simulator
+from polyfold.tasks import Task
 from polyfold.transcript import Transcript
 from polyfold.types import Action, Decision, FoldLine, Observation, Scene, SimState, Subgoal
 
@@ -23,7 +25,8 @@ __all__ = ["MAX_STEPS", "Episode", "EpisodeStart", "Failure", "Step", "build_age
 MAX_STEPS = 12
 """Folds after which an agent that never says it is done is stopped."""
 
-PRIVILEGED = frozenset({"state", "simulator"})
+GUIDED = frozenset({"subgoal_texts", "subgoal_images", "goal_image", "fold_lines"})
+PRIVILEGED = frozenset({"fold_lines", "state", "simulator"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,6 +139,7 @@ def run_episode(
     seed: int,
     simulator: Simulator | None = None,
     agent: Agent | None = None,
+    task: Task | None = None,
 ) -> Episode:
     """Run one episode from a sentence to the final picture.
 
@@ -148,6 +152,10 @@ def run_episode(
         instruction: what to do with it.
         seed: decides the pose on the table and the agent's random choices.
         simulator, agent: instances to reuse; by default they are constructed from the experiment.
+        task: what guidance is made from, for agents that require some.
+
+    Raises:
+        ConfigError: if the agent requires guidance and no task is given.
     """
     template = plugins.create("garments", garment.kind).template()
     agent = agent or build_agent(experiment)
@@ -165,7 +173,13 @@ def run_episode(
         error: PolyfoldError | None = None
         try:
             clock = time.perf_counter()
-            goal = _goal(agent, instruction, garment.kind, template, seed, transcript, simulator)
+            goal = Goal(
+                kind=garment.kind,
+                template=template,
+                seed=seed,
+                **_told(agent.requires, instruction, transcript, simulator),
+                **_guidance(agent.requires, experiment, instruction, task, garment, initial_state, start),
+            )
             subgoals = tuple(agent.begin(goal, observation))
             seconds["subgoals"] = time.perf_counter() - clock
             plugins.notify(
@@ -207,23 +221,44 @@ def run_episode(
             simulator.close()
 
 
-def _goal(
-    agent: Agent, instruction: str, kind: str, template: Any, seed: int, transcript: Transcript, simulator: Simulator
-) -> Goal:
-    """Hand the agent what it requires and withhold the rest."""
-    requires = agent.requires
-    unknown = requires - {"instruction", "subgoal_texts", "subgoal_images", "goal_image", *PRIVILEGED}
+def _told(requires: frozenset[str], instruction: str, transcript: Transcript, simulator: Simulator) -> dict[str, Any]:
+    """Of sentence and privileged access, what the agent requires; the rest is withheld."""
+    unknown = requires - {"instruction", *GUIDED, *PRIVILEGED}
     if unknown:
         raise PlanError(f"the agent requires {sorted(unknown)}, which no loop can give; see polyfold.interfaces.Agent")
-    return Goal(
-        instruction=instruction if "instruction" in requires else None,
-        kind=kind,
-        template=template,
-        seed=seed,
-        conversation=transcript if "instruction" in requires else None,
-        state=simulator.state if "state" in requires else None,
-        simulator=simulator if "simulator" in requires else None,
-    )
+    told: dict[str, Any] = {}
+    if "instruction" in requires:
+        told |= {"instruction": instruction, "conversation": transcript}
+    if "state" in requires:
+        told["state"] = simulator.state
+    if "simulator" in requires:
+        told["simulator"] = simulator
+    return told
+
+
+def _guidance(
+    requires: frozenset[str],
+    experiment: Experiment,
+    instruction: str,
+    task: Task | None,
+    garment: Garment,
+    flat: SimState,
+    seen: Observation,
+) -> dict[str, Any]:
+    """Of the guidance, what the agent requires; with ``final`` guidance the only subgoal is the goal."""
+    if not requires & GUIDED:
+        return {}
+    if task is None:
+        raise ConfigError("this agent needs guidance, which is made from a task; name one (--task)")
+    made = guidance_for(task, garment, flat, seen)
+    final = experiment.guidance == "final"
+    offered = {
+        "subgoal_texts": (instruction,) if final else made.subgoal_texts,
+        "subgoal_images": (made.goal_image,) if final else made.subgoal_images,
+        "goal_image": made.goal_image,
+        "fold_lines": made.fold_lines,
+    }
+    return {name: value for name, value in offered.items() if name in requires}
 
 
 def _execute(simulator: Simulator, decision: Decision, seen: Observation, index: int) -> tuple[Step, Observation]:

@@ -86,13 +86,12 @@ def attempt(
     Args:
         frames: if given, pictures of the motion are appended (for simulators that can ``record``).
     """
-    if task is not None:
-        find_task(task, garment.kind)
+    goal = None if task is None else find_task(task, garment.kind)
     simulator = experiment.create("simulators", "simulator")
     try:
         if frames is not None and hasattr(simulator, "record"):
             simulator.record(frames.append, GIF_RATE)
-        episode = judge(run_episode(experiment, garment, instruction, seed, simulator), task)
+        episode = judge(run_episode(experiment, garment, instruction, seed, simulator, task=goal), task)
     finally:
         simulator.close()
     plugins.notify("on_episode_end", episode=episode)

@@ -166,23 +166,27 @@ class Goal:
     """What the loop hands an agent at the start: only what the agent ``requires``; the rest is None.
 
     Attributes:
-        instruction: the sentence.
         kind: garment kind.
         template: polygon template of the kind.
         seed: for the agent's own randomness.
+        instruction: the sentence.
         conversation: the episode's language model.
-        subgoal_texts, subgoal_images, goal_image: accurate guidance, for agents that need it.
-        state, simulator: privileged access, for agents that need it.
+        subgoal_texts, subgoal_images, goal_image: accurate guidance, for agents that need it; with ``final`` guidance
+            the subgoals are the goal alone.
+        fold_lines: the ideal fold lines [px]; privileged.
+        state: function that returns the true state; privileged.
+        simulator: the simulator itself, to try folds in; privileged.
     """
 
-    instruction: str | None
     kind: str
     template: Template
     seed: int
+    instruction: str | None = None
     conversation: Conversation | None = None
     subgoal_texts: Sequence[str] | None = None
     subgoal_images: Sequence[NDArray[np.uint8]] | None = None
     goal_image: NDArray[np.uint8] | None = None
+    fold_lines: Sequence[FoldLine] | None = None
     state: Any = None
     simulator: Any = None
 
@@ -191,8 +195,8 @@ class Goal:
 class Agent(Protocol):
     """Maps instruction and pictures to actions; ``polyfold`` composes grounding, planner, policy and LLM.
 
-    ``requires`` is a subset of {"instruction", "subgoal_texts", "subgoal_images", "goal_image", "state", "simulator"};
-    the last two are privileged and marked so wherever results are shown.
+    ``requires`` is a subset of {"instruction", "subgoal_texts", "subgoal_images", "goal_image", "fold_lines", "state",
+    "simulator"}; the last three are privileged and marked so wherever results are shown.
     """
 
     requires: ClassVar[frozenset[str]]

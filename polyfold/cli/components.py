@@ -20,6 +20,7 @@ def add_component_options(parser: argparse.ArgumentParser) -> None:
     for field in FIELDS:
         default = config.Experiment().model_dump()[field]["name"]
         group.add_argument(f"--{field}", metavar="NAME[:ARG]", help=f"default: {default}")
+    group.add_argument("--guidance", choices=["steps", "final"], help="for agents that need guidance (default: steps)")
     group.add_argument("--config", metavar="FILE", help="TOML file with components and parameters")
     group.add_argument(
         "--set",
@@ -33,7 +34,7 @@ def add_component_options(parser: argparse.ArgumentParser) -> None:
 def experiment_from(arguments: argparse.Namespace) -> config.Experiment:
     """The experiment that the options describe. Raises ConfigError naming the wrong option."""
     experiment = config.load(arguments.config) if arguments.config else config.Experiment()
-    chosen = {field: getattr(arguments, field) for field in FIELDS if getattr(arguments, field)}
+    chosen = {field: getattr(arguments, field) for field in (*FIELDS, "guidance") if getattr(arguments, field)}
     experiment = experiment.override(chosen)
     for assignment in arguments.set:
         field, param, value = _parse(assignment)
