@@ -15,11 +15,13 @@ Floats = NDArray[np.float32]
 
 REACH = 0.015
 """A gripper holds the cloth, all layers of it, within this distance of the pick [m]."""
-RISING, FALLING, HIGHEST = 0.35, 0.35, 0.30
+RISING, FALLING, HIGHEST = 0.45, 0.35, 0.30
 """Height of the path's first and second half as shares of the distance from pick to place; upper limit [m].
 
 Lower on the way down: a flap that is laid down taut drags what lies below it along.
 """
+ROUNDNESS = 1.3
+"""Shape of the path: 1 is a triangle, 2 half an ellipse."""
 SPEED, RAMP, HOLD = 0.5, 0.15, 0.05
 """Speed of the gripper [m/s], time to reach it and to stop [s], and pause before it opens [s]."""
 
@@ -89,20 +91,29 @@ def take_hold(action: Action, positions: NDArray[np.float64], camera: Camera, th
 
 
 def plan_motion(grasp: Grasp, time_step: float) -> Motion:
-    """Half ellipses from pick to place, all arms arriving together, followed by a short hold."""
+    """Arcs from pick to place, all arms arriving together, followed by a short hold."""
     span = (grasp.ends - grasp.starts)[:, :2]
     distance = np.hypot(*span.T)
-    longest = float((np.pi * np.sqrt(((distance / 2) ** 2 + np.minimum(RISING * distance, HIGHEST) ** 2) / 2)).max())
-    progress = _eased(longest, time_step)
-    angles = np.pi * progress
-    swing = (1.0 - np.cos(angles)) / 2
-    height = np.minimum((RISING + (FALLING - RISING) * swing)[:, None] * distance, HIGHEST)
+    swing, lift, length = _arc()
+    progress = _eased(float(length[-1] * distance.max()), time_step)
+    across = np.interp(progress, length / length[-1], swing)
+    up = np.interp(progress, length / length[-1], lift)
+    height = np.minimum(distance, HIGHEST / lift.max())
     path = np.empty((len(progress), len(span), 3))
-    path[:, :, :2] = grasp.starts[:, :2] + swing[:, None, None] * span
-    rise = grasp.starts[:, 2] + progress[:, None] * (grasp.ends - grasp.starts)[:, 2]
-    path[:, :, 2] = rise + np.sin(angles)[:, None] * height
+    path[:, :, :2] = grasp.starts[:, :2] + across[:, None, None] * span
+    path[:, :, 2] = grasp.starts[:, 2] + progress[:, None] * (grasp.ends - grasp.starts)[:, 2] + up[:, None] * height
     directions = span / np.maximum(distance, 1e-9)[:, None]
-    return Motion(path.astype(np.float32), angles.astype(np.float32), directions.astype(np.float32))
+    return Motion(path.astype(np.float32), (np.pi * progress).astype(np.float32), directions.astype(np.float32))
+
+
+def _arc() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """The path over a distance of 1: how far across, how high, and the length so far."""
+    angle = np.linspace(0.0, np.pi, 401)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    across = (1.0 - np.sign(cosine) * np.abs(cosine) ** (2 / ROUNDNESS)) / 2
+    up = (RISING + (FALLING - RISING) * across) * sine ** (2 / ROUNDNESS)
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(across), np.diff(up)))])
+    return across, up, length
 
 
 def _eased(length: float, time_step: float) -> NDArray[np.float64]:
