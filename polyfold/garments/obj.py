@@ -128,7 +128,9 @@ def _read_mesh(path: Path) -> tuple[Floats, Faces]:
         raise GarmentError(f"the mesh {path} can't be read ({error}); export it again as OBJ") from error
     if not len(faces):
         raise GarmentError(f"{path} has no faces; export it as a surface, not as points")
-    mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    if mesh.body_count > 1:
+        # Some exporters repeat vertices along texture seams. In one piece, vertices in one place are front and back.
+        mesh.merge_vertices(merge_tex=True, merge_norm=True)
     mesh.update_faces(mesh.nondegenerate_faces())
     mesh.update_faces(mesh.unique_faces())
     _, owners = np.unique(mesh.edges_sorted, axis=0, return_counts=True)

@@ -87,6 +87,24 @@ def test_inconsistent_winding_and_scraps_are_put_right(files, garment):
     assert rims(load_obj(*files, "pants", edge_length=0.02).mesh) == 3
 
 
+def test_vertices_repeated_along_texture_seams_are_joined(files, garment):
+    mesh, positions = garment.mesh, worn_pants(garment)
+    lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in positions]
+    copies = {vertex: len(lines) + k for k, vertex in enumerate(np.flatnonzero(mesh.seam))}
+    lines += [lines[vertex] for vertex in copies]
+    for face, panel in zip(mesh.triangles, mesh.panel, strict=True):
+        a, b, c = (copies.get(vertex, vertex) + 1 if panel == 1 else vertex + 1 for vertex in face)
+        lines.append(f"f {a} {b} {c}" if panel == 1 else f"f {a} {c} {b}")
+    files[0].write_text("\n".join(lines))
+    assert rims(load_obj(*files, "pants", edge_length=0.02).mesh) == 3
+
+
+def test_a_garment_that_is_flat_already_may_have_front_and_back_in_one_place(files, garment):
+    flat = np.column_stack([garment.mesh.vertices, np.zeros(len(garment.mesh.vertices))])
+    loaded = load_obj(write_obj(files[0], flat, garment.mesh), files[1], "pants", edge_length=0.02)
+    np.testing.assert_allclose(np.ptp(loaded.mesh.vertices, axis=0), np.ptp(garment.mesh.vertices, axis=0), rtol=0.03)
+
+
 def test_a_flat_cloth_stays_what_it_is(tmp_path):
     garment = KINDS["rectangle"].generate(2002, 0.02)
     flat = np.column_stack([garment.mesh.vertices, np.zeros(len(garment.mesh.vertices))])
