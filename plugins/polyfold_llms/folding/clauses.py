@@ -48,7 +48,7 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
         raise NotUnderstoodError(f"{frame.times} times is more often than cloth can be folded")
     frame = _inherited(frame, previous)
     context = next((p for p in frame.moving if p.noun and p.noun not in WHOLES), None) or frame.context
-    moving = [part for phrase in frame.moving for part in parts_of(phrase, garment, "moving", context)]
+    moving = [part for phrase in _distinct(frame.moving) for part in parts_of(phrase, garment, "moving", context)]
     excluded = {part for phrase in frame.excluded for part in parts_of(phrase, garment, "moving", context)}
     moving = [part for part in moving if part not in excluded]
     targets = [part for phrase in frame.targets for part in parts_of(phrase, garment, "target", context)]
@@ -56,6 +56,10 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
     if moving and moving[0].what == "corner":
         targets += [part for part in axes if part.what == "centre"]
     clause = Clause(frame, tuple(targets), tuple(axes))
+    named_shape = any(phrase.noun == "triangle" for phrase in frame.moving) and not garment.folds
+    if named_shape and not (moving and frame.verbs) and not frame.fractions:
+        frame = replace(frame, goals=["triangle"], moving=[])
+        clause = replace(clause, frame=frame)
     moving = [part for part in moving if part.what not in ("result", "rest", "triangle", "body", "crease")]
     if moving and moving[0].what in MIDDLE:
         raise NotUnderstoodError("the middle can't be moved; name an edge, a corner or a part")
@@ -73,6 +77,16 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
     for _ in range(frame.times):
         folds += _fold_parts(moving, clause, replace_folds(garment, folds))
     return folds
+
+
+def _distinct(phrases: list[NounPhrase]) -> list[NounPhrase]:
+    """Without a second, barer mention: *starting at the bottom left, fold that corner*."""
+    sided = [phrase for phrase in phrases if phrase.sides]
+    return [
+        phrase
+        for phrase in phrases
+        if phrase.sides or phrase.plural or phrase.quantity or phrase.number or not (phrase.noun and sided)
+    ]
 
 
 def replace_folds(garment: Garment, more: list[Fold]) -> Garment:
@@ -103,6 +117,10 @@ def _inherited(frame: Frame, previous: Frame | None) -> Frame:
             leads=frame.leads,
             manners=frame.manners or previous.manners,
         )
+    if frame.again and not frame.moving and frame.targets:
+        return replace(frame, moving=previous.moving)
+    if frame.too and not (frame.manners or frame.axes):
+        frame = replace(frame, manners=list(previous.manners), axes=_sideless(previous.axes))
     bare = frame.specific and not (frame.placed or frame.fractions or frame.goals)
     if bare and (frame.elliptical or not frame.verbs):
         targets = [p for p in previous.targets if p.noun in MIDDLE or p.noun == "body" or p.quantity == "opposite"]
@@ -125,6 +143,9 @@ def _led(moving: list[Part], first: list[Part]) -> list[Part]:
 def _fold_parts(moving: list[Part], clause: Clause, garment: Garment) -> list[Fold]:
     kinds = {part.what for part in moving}
     names = [part.which for part in moving]
+    fraction = next((f for f in clause.frame.fractions if f != "half"), None)
+    if fraction and kinds == {"edge"} and len(names) == 1:
+        return fold_in_fraction(garment, fraction, names[0])
     if kinds == {"edge"} and len(names) > 1:
         return _edge_pair(names, clause, garment)
     if kinds == {"corner"} and len(names) > 1:
@@ -158,16 +179,19 @@ def _fold_whole(clause: Clause, garment: Garment, steps: int | None) -> list[Fol
     if len(creases) == 2 and creases[1] == OPPOSITE_CORNER[creases[0]]:
         return [_diagonal(clause, garment)]
     fraction = frame.fractions[0] if frame.fractions else None
+    goal = next((g for g in frame.goals if g not in ("tidy", "store")), frame.goals[0] if frame.goals else None)
     if fraction and fraction != "half":
         return fold_in_fraction(garment, fraction, _moving_edge(clause, garment))
+    if clause.axes and {part.what for part in clause.axes} <= {"armpit", "armhole", "crotch"}:
+        raise NotUnderstoodError("it does not say which part to move")
     if fraction or clause.axes or clause.has("edgetoedge", "together"):
-        if frame.goals and frame.goals[0] in ("triangle", "smalltriangle"):
-            return fold_for_goal(garment, frame.goals[0], steps)
+        if goal in ("triangle", "smalltriangle"):
+            return fold_for_goal(garment, goal, steps)
         return [fold_in_half(garment, _moving_edge(clause, garment))]
-    if frame.goals:
-        if set(frame.verbs) <= {"move"} and frame.goals[0] == "store":
+    if goal:
+        if set(frame.verbs) == {"move"} and goal == "store":
             raise NotUnderstoodError("it asks to carry the cloth somewhere; I only fold")
-        return fold_for_goal(garment, frame.goals[0], steps)
+        return _led_folds(fold_for_goal(garment, goal, steps), clause, garment)
     if clause.targets:
         raise NotUnderstoodError("it does not say which part to move there")
     if set(frame.verbs) == {"turn"} and frame.directions == ["over"]:
@@ -177,6 +201,15 @@ def _fold_whole(clause: Clause, garment: Garment, steps: int | None) -> list[Fol
     if set(frame.verbs) & {"fold", "tidy", "halve"}:
         return fold_for_goal(garment, "default", steps)
     raise NotUnderstoodError("it does not say what to fold and where to")
+
+
+def _led_folds(folds: list[Fold], clause: Clause, garment: Garment) -> list[Fold]:
+    """The folds of a recipe, with the part that the clause wants first moved to the front of its like."""
+    if clause.frame.leads is None:
+        return folds
+    first = {part.which for part in parts_of(clause.frame.leads, garment, "moving", clause.frame.context)}
+    kinds = [fold.action for fold in folds]
+    return sorted(folds, key=lambda fold: (kinds.index(fold.action), fold.part not in first))
 
 
 def _moving_edge(clause: Clause, garment: Garment) -> str | None:
@@ -242,7 +275,11 @@ def _edge_pair(names: list[str], clause: Clause, garment: Garment) -> list[Fold]
             or _is_legs(frame)
         ):
             return [fold_in_half(garment, names[0])]
-        if len(names) == 2 and names[1] == OPPOSITE_EDGE[names[0]] and clause.targets == (Part("edge", "opposite"),):
+        if (
+            len(names) == 2
+            and names[1] == OPPOSITE_EDGE.get(names[0])
+            and clause.targets == (Part("edge", "opposite"),)
+        ):
             return [fold_in_half(garment, names[0])]
         if clause.targets:
             raise NotUnderstoodError("two edges can't both go there; name the middle, or one edge at a time")

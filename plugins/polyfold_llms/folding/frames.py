@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from polyfold_llms.folding.phrases import NounPhrase, noun_phrase, starts_noun_phrase
+from polyfold_llms.folding.phrases import OPPOSITE, NounPhrase, noun_phrase, starts_noun_phrase
 from polyfold_llms.folding.tokens import Token
 
 __all__ = ["WHOLES", "Frame", "Request", "frames_of"]
@@ -15,6 +15,9 @@ SHAPES = ("triangle", "result")
 
 SPANS = ("runs", "running", "run", "going", "goes", "extending", "extends", "leading", "leads", "drawn")
 """Verbs by which a line is described: *the diagonal that runs from ... to ...*."""
+
+LINES = ("crease", "diagonal", "midline", "gap", "third", "quarter")
+"""Nouns of lines, which what follows directly describes."""
 
 SEAMS = ("armpit", "armhole", "crotch")
 """Nouns that lie on creases and never move on their own."""
@@ -42,6 +45,7 @@ class Frame:
     times: int = 1
     again: bool = False
     same: bool = False
+    too: bool = False
     only: bool = False
     negated: bool = False
     from_source: bool = False
@@ -75,6 +79,7 @@ class Request:
     frames: list[Frame]
     garments: list[str]
     steps: int | None = None
+    several: bool = False
 
 
 def frames_of(tokens: Sequence[Token]) -> Request:
@@ -93,11 +98,16 @@ class _Assembler:
         self.role = "moving"
         self.purpose = False
         self.spanning = False
+        self.spanning_from = False
         self.shaping = False
         self.joined = False
+        self.comma = False
+        self._named_last = False
+        self._line_last = False
         self.sentence_start = 0
         self.skip_to = 0
         self.garments: list[str] = []
+        self.several = False
         self.steps: int | None = None
 
     def run(self) -> Request:
@@ -111,20 +121,26 @@ class _Assembler:
                 self._lead(NounPhrase(sides=(frozenset({token.value}),)))
                 at += 3
                 continue
-            if token.text == "crease" and self.frame.empty and starts_noun_phrase(self.tokens, at + 1):
+            if token.text in ("crease", "quarter") and self.frame.empty and starts_noun_phrase(self.tokens, at + 1):
                 self.frame.verbs.append("fold")
+                self.frame.fractions += ["quarter"] if token.text == "quarter" else []
                 at += 1
                 continue
             if starts_noun_phrase(self.tokens, at) and not self._ordinal(at) and not self._shape(at):
                 phrase, at = noun_phrase(self.tokens, at)
                 self._add_phrase(phrase, at)
+                self._line_last = bool(self.frame.axes) and self.frame.axes[-1] is phrase and phrase.noun in LINES
                 self.joined = False
+                self._named_last = True
                 continue
             getattr(self, f"_on_{token.category}")(token, at)
+            self._named_last = False
+            self._line_last = False
+            self.comma = token.is_("join", "comma")
             self.joined = token.is_("join") or (self.joined and token.category in ("neg", "quant"))
             at += 1
         self._close()
-        return Request(self._ordered(), self.garments, self.steps)
+        return Request(self._ordered(), self.garments, self.steps, self.several)
 
     # Order -----------------------------------------------------------------------------------------------------------
 
@@ -136,6 +152,7 @@ class _Assembler:
             self.order = order
         self.frame = Frame()
         self.role, self.purpose, self.spanning, self.shaping = "moving", False, False, False
+        self.spanning_from = False
 
     def _ordered(self) -> list[Frame]:
         """Clauses marked ``earlier`` come before everything of their sentence; ``later`` ones after the next."""
@@ -166,6 +183,8 @@ class _Assembler:
         at_start = self.frame.empty and len(self.done) == self.sentence_start
         if token.value == "then":
             self._close()
+        elif token.value == "first" and self._ends(at + 1) and self.frame.verbs and self.done and not self._named_last:
+            self.order = "earlier"
         elif token.value == "first":
             if self.purpose and self.frame.moving and not self.frame.verbs:
                 self.frame.leads = self.frame.moving.pop()
@@ -210,6 +229,11 @@ class _Assembler:
 
     def _on_verb(self, token: Token, at: int) -> None:
         value = token.value
+        if self.shaping and value == "tidy":
+            self.frame.goals.append("tidy")
+            return
+        if token.text.startswith(("slant", "angl", "slop")):
+            self.frame.manners.append("slanted")
         if value.startswith("bad"):
             self.frame.refused.append(token.text)
             return
@@ -248,7 +272,10 @@ class _Assembler:
 
     def _begins_clause(self, token: Token) -> bool:
         frame = self.frame
-        explains = token.form == "ing" and not frame.specific and (frame.fractions or frame.goals or frame.axes)
+        explains = token.form == "ing" and (
+            (not frame.specific and (frame.fractions or frame.goals or frame.axes))
+            or (self.comma and frame.specific and bool(frame.verbs))
+        )
         if explains:
             self.purpose = True
         if self.purpose or not (frame.verbs or frame.moving or frame.placed or frame.fractions):
@@ -265,6 +292,7 @@ class _Assembler:
 
     def _add_phrase(self, phrase: NounPhrase, after: int) -> None:
         self.garments += phrase.garments
+        self.several |= bool(phrase.garments and not phrase.noun and (phrase.number or 1) > 1)
         self.shaping = False
         frame = self.frame
         if self.spanning and self.joined:
@@ -294,8 +322,19 @@ class _Assembler:
             frame.axes.append(phrase)
             self.role = "axis" if phrase.noun == "crease" else "moving"
             return
+        if phrase.noun in ("body", "centre", "midline") and frame.moving and not frame.targets:
+            frame.targets.append(phrase)
+            return
+        if phrase.quantity == "other" and phrase.text == "another" and not (phrase.noun or phrase.sides):
+            frame.again = True
+            return
         subject_of_meet = after < len(self.tokens) and self.tokens[after].is_("verb", "meet")
-        if frame.axes and frame.axes[-1].noun == "crease" and phrase.names_part and not self.joined:
+        if (
+            frame.axes
+            and phrase.names_part
+            and not self.joined
+            and (self._line_last or frame.axes[-1].noun == "crease")
+        ):
             frame.axes.append(phrase)
         elif (self.purpose and frame.specific) or (frame.negated and frame.moving and phrase.pronoun == "it"):
             frame.restated.append(phrase)
@@ -332,6 +371,8 @@ class _Assembler:
                 self.role = "axis"
         elif value == "from":
             self.frame.from_source = not self.frame.axes
+            if self._line_last:
+                self.role, self.spanning_from = "axis", True
         elif value == "with" and "meet" in self.frame.verbs:
             self.role = "target"
         elif value == "with":
@@ -395,7 +436,9 @@ class _Assembler:
         return not self.frame.moving
 
     def _inside_axis(self) -> bool:
-        return bool(self.frame.axes) and self.frame.axes[0].noun in ("crease", "diagonal", "armpit")
+        return self.spanning_from or (
+            bool(self.frame.axes) and self.frame.axes[0].noun in ("crease", "diagonal", "armpit")
+        )
 
     def _on_dir(self, token: Token, at: int) -> None:
         self.frame.directions.append(token.value)
@@ -424,7 +467,11 @@ class _Assembler:
                 self._close()
             self.frame.same = True
         elif token.value == "again":
+            if self.joined and self.frame.placed:
+                self._close()
             self.frame.again = True
+        elif token.value == "too":
+            self.frame.too = True
 
     def _on_times(self, token: Token, at: int) -> None:
         self.frame.times = int(token.value)
@@ -468,12 +515,39 @@ class _Assembler:
         self.frame.only = True
 
     def _on_join(self, token: Token, at: int) -> None:
+        led = self._order_list(at + 1)
         if token.value == "or":
             self.frame.unknown.append("or")
+        elif led is not None:
+            self.frame.leads, self.skip_to = led
         elif token.value == "colon" and self.frame.specific:
             self._close()
         elif token.value == "colon":
             self.purpose = bool(self.frame.fractions or self.frame.goals or self.frame.axes)
+
+    def _order_list(self, at: int) -> tuple[NounPhrase, int] | None:
+        """``both sleeves in, first the right and then the left``: the order of what was named together."""
+        last = self.frame.moving[-1] if self.frame.moving else None
+        if last is None or last.sides or not (last.plural or last.quantity in ("both", "all", "each")):
+            return None
+        end = at
+        sides = []
+        while end < len(self.tokens) and self.tokens[end].category != "stop":
+            token = self.tokens[end]
+            if token.category == "side":
+                sides.append(token.value)
+            elif not (token.category in ("seq", "join", "pronoun", "quant") or token.is_("noun", last.noun or "")):
+                break
+            end += 1
+            if len(sides) == 2:
+                break
+        if len(sides) != 2 or sides[1] != OPPOSITE[sides[0]]:
+            return None
+        while end < len(self.tokens) and (
+            self.tokens[end].category in ("pronoun",) or self.tokens[end].is_("noun", last.noun or "")
+        ):
+            end += 1
+        return NounPhrase(sides=(frozenset({sides[0]}),)), end
 
     def _on_but(self, token: Token, at: int) -> None:
         if not self.frame.empty:

@@ -50,6 +50,8 @@ def understand(text: str, garment: Garment) -> Meaning:
 
 
 def _check_garment(request: Request, garment: Garment) -> None:
+    if request.several:
+        raise NotUnderstoodError(f"it speaks of several pieces, but one {garment.spoken} lies on the table")
     for named in request.garments:
         if named == "other":
             raise NotUnderstoodError(f"it asks for something else than the {garment.spoken} on the table")
@@ -83,6 +85,9 @@ def _give_context(frames: list[Frame]) -> None:
         frame.context = last
         mentioned = [*frame.moving, *frame.excluded, *frame.axes]
         last = next((phrase for phrase in mentioned if phrase.noun), last)
+    for frame in reversed(frames):
+        frame.context = frame.context or last
+        last = next((phrase for phrase in frame.moving if phrase.noun), last)
 
 
 def _barred(request: Request, garment: Garment) -> set[tuple[str, str]]:
@@ -138,6 +143,7 @@ def _joined(first: Frame, second: Frame) -> Frame:
 def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> None:
     explicit = any(_explicit(frame) for frame in frames)
     previous: Frame | None = None
+    latest: Frame | None = None
     for number, frame in enumerate(frames):
         if _describes(frame, frames[number + 1 :]):
             continue
@@ -147,10 +153,12 @@ def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> No
         if frame.goals and explicit and not _explicit(frame) and frame.goals[0] in ("tidy", "store"):
             continue
         wanted = steps if not explicit else None
-        for fold in folds_of_frame(frame, garment, previous, wanted):
+        source = latest if frame.again else previous
+        for fold in folds_of_frame(frame, garment, source, wanted):
             garment.folds.append(fold)
             if len(garment.folds) > MAX_FOLDS + 4:
                 raise NotUnderstoodError("that is more folds than a piece of cloth can take")
+        latest = frame
         if not (frame.same or frame.elliptical) or previous is None:
             previous = frame
     if not garment.folds:

@@ -67,6 +67,8 @@ def noun_phrase(tokens: Sequence[Token], at: int) -> tuple[NounPhrase, int]:
             if found.noun or found.pronoun or OPPOSITE[token.value] in group or token.value in group:
                 break
             group.add(token.value)
+        elif token.is_("quant", "opposite") and found.noun and not found.quantity:
+            found = replace(found, quantity="opposite")
         elif token.category in ("quant", "number"):
             if found.noun or (token.category == "number" and found.number is not None):
                 break

@@ -60,6 +60,9 @@ IRREGULAR = {
     "dries": "dry", "dried": "dry", "ran": "run", "shrunk": "shrink", "ft": "foot", "centres": "centre",
     "centers": "centre", "center": "centre", "middles": "middle", "organised": "organise",
 }  # fmt: skip
+NAMED_ASIDE = re.compile(r"\((?:[a-z0-9]+_[a-z0-9_]+|,|and|\s)+\)")
+"""Vertex names in brackets, which only repeat what stands before them."""
+SIDED_NAME = re.compile(r"\b(armpit|shoulder|neck|sleeve|hem|waist|leg)(?:_top|_bottom)?_(left|right|center)\b")
 COUNTED = re.compile(
     r"\b(?:in|with|using|within|by|takes?)\s+(?:just |only |exactly )?(?:a total of )?(\w+)\s+"
     r"(?:\w+ )?(?:steps?|moves?|folds|stages?|foldings?|movements?|motions?|operations?|goes|actions?)\b"
@@ -108,6 +111,9 @@ def read(text: str) -> Sentence:
 
 def _plain(text: str) -> str:
     text = unicodedata.normalize("NFKD", text.lower()).replace("\u2019", "'").replace("\u2018", "'")
+    text = NAMED_ASIDE.sub(" ", text)
+    text = re.sub(r"(_(?:left|right))\s*-\s*(?=[a-z]+_)", r"\1 to ", text)
+    text = SIDED_NAME.sub(r"\2 \1", text.replace("leg_outer", "leg").replace("leg_inner", "leg"))
     text = (
         text.replace("\u2014", ", ")
         .replace("\u2013", ", ")
@@ -175,10 +181,16 @@ def _spell(word: str, corrections: list[tuple[str, str]]) -> str:
     if len(word) < 4 or not word.isalpha() or _known(word) or word.startswith(("stepcount", "timescount")):
         return word
     shortest = 5 if len(word) > 4 else 4
-    near = sorted({k for k in _vocabulary() if len(k) >= shortest and _one_edit(word, k, len(word) == 4)})
+    near = sorted(
+        k
+        for k in _vocabulary()
+        if len(k) >= shortest and _one_edit(word, k, len(word) == 4) and (k[0] == word[0] or k[:2] == word[1::-1])
+    )
     singular = word[:-1] if word.endswith("s") else ""
     if not near and len(singular) >= 5:
-        near = sorted({k + "s" for k in _vocabulary() if len(k) >= 5 and _one_edit(singular, k, False)})
+        near = sorted(
+            k + "s" for k in _vocabulary() if len(k) >= 5 and k[0] == word[0] and _one_edit(singular, k, False)
+        )
     if len(near) > 1:
         near = [known for known in near if known[0] == word[0] and len(known) == len(word)]
     if len(near) != 1:
