@@ -7,7 +7,7 @@ from numba import njit
 
 __all__ = ["contour_cost", "contour_normal_equations", "field_at"]
 
-COVERED = 0.2
+COVERED = 0.05
 """Weight of a distance inside the cloth for edges that other cloth may cover."""
 
 

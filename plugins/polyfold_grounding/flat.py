@@ -23,7 +23,7 @@ _STARTS, _APART = 8, np.radians(30.0)
 _FREE = 4
 """How many of them go through the free stage."""
 
-_DELTA = 6.0
+_DELTA = 4.0
 """Distance [px at scale 1] beyond which a contour sample counts linearly."""
 
 _SHARP = 30.0

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,10 @@ __all__ = ["Tracked", "first_model", "next_model"]
 Floats = NDArray[np.float64]
 
 _BETTER = 0.6
-"""A rarer explanation (displaced, fold failed) is believed when its distance is below this share of the usual one."""
+"""A rarer explanation (displaced, fold failed) is believed when its distance is below this share of the usual one ..."""
+
+_MUCH_BETTER = 0.4
+"""... and a still rarer one (an earlier fold came undone) when it is below this share."""
 
 _UNREMARKABLE = 2.0
 """A Chamfer distance [px at scale 1] that needs no rarer explanation."""
@@ -61,47 +65,85 @@ def first_model(template: Template, evidence: Evidence, rotations: int, optimize
 
 def next_model(model: FoldedModel, line: FoldLine | None, evidence: Evidence, displaced: float) -> Tracked:
     """Follow a model to the next picture, after a fold along ``line`` or after nothing was folded."""
-    notes: list[str] = []
+    found = _as_planned(model, line, evidence)
+    if found.best.chamfer > _UNREMARKABLE * evidence.scale:
+        found = min([found, *_with_a_fold_undone(model, line, evidence, found)], key=_judged)
+    if found.best.chamfer > displaced * evidence.scale:
+        found = _anywhere(found, evidence, displaced)
+    notes = found.notes
+    if _ambiguous(found, evidence.scale):
+        notes += ("ambiguous silhouette: another pose of the garment explains it as well",)
+    return Tracked(found.silhouette.moved(found.best.parameters), found.best.chamfer, notes)
+
+
+@dataclass(frozen=True, eq=False)
+class _Explanation:
+    """A model, its best pose and last fold line, their rivals, what is unusual, and how much better it has to be."""
+
+    silhouette: Silhouette
+    best: Refit
+    rivals: list[Refit]
+    notes: tuple[str, ...] = ()
+    share: float = 1.0
+
+
+def _judged(explanation: _Explanation) -> float:
+    """Chamfer distance [px], as if it were longer for a rare explanation."""
+    return explanation.best.chamfer / explanation.share
+
+
+def _as_planned(model: FoldedModel, line: FoldLine | None, evidence: Evidence) -> _Explanation:
     try:
-        silhouette = Silhouette(model, line, evidence)
+        return _explain(Silhouette(model, line, evidence))
     except PlanError as problem:
-        notes.append(f"no fold was added to the model: {problem}")
-        line, silhouette = None, Silhouette(model, None, evidence)
-    best, others = _explain(silhouette)
-    limit = displaced * evidence.scale
-    if line is not None and best.chamfer > _UNREMARKABLE * evidence.scale:
-        unfolded = Silhouette(model, None, evidence)
-        still = _explain(unfolded)[0]
-        if still.chamfer < _BETTER * best.chamfer:
-            notes.append("the last fold did not take effect; the garment looks as it did before it")
-            silhouette, best, others = unfolded, still, []
-    if best.chamfer > limit:
-        found = register(silhouette, evidence)
-        if found[0].chamfer < _BETTER * best.chamfer:
-            notes.append("the garment was displaced and has been found again")
-            best, others = found[0], found[1:]
-        elif best.chamfer > 2 * limit:
-            notes.append(f"the model explains the picture badly (Chamfer distance {best.chamfer:.0f} px)")
-    if _ambiguous(silhouette, best, others, evidence.scale):
-        notes.append("ambiguous silhouette: another pose of the garment explains it as well")
-    return Tracked(silhouette.moved(best.parameters), best.chamfer, tuple(notes))
+        still = _explain(Silhouette(model, None, evidence))
+        return replace(still, notes=(f"no fold was added to the model: {problem}",))
 
 
-def _explain(silhouette: Silhouette) -> tuple[Refit, list[Refit]]:
+def _with_a_fold_undone(
+    model: FoldedModel, line: FoldLine | None, evidence: Evidence, planned: _Explanation
+) -> Iterator[_Explanation]:
+    """What it would be if the last fold had not taken effect, or an earlier one had come undone."""
+    if planned.silhouette.folds:
+        note = "the last fold did not take effect; the garment looks as it did before it"
+        yield replace(_explain(Silhouette(model, None, evidence)), notes=(note,), share=_BETTER)
+    for number in range(1, len(model.folds) + 1):
+        others = model.folds[: number - 1] + model.folds[number:]
+        opened = FoldedModel(model.rest, model.names, model.descriptions, others, model.kind)
+        note = f"fold {number} has come undone; later creases are renumbered"
+        try:
+            yield replace(_explain(Silhouette(opened, line, evidence)), notes=(note,), share=_MUCH_BETTER)
+        except PlanError:
+            continue
+
+
+def _anywhere(found: _Explanation, evidence: Evidence, displaced: float) -> _Explanation:
+    """The same model searched at all rotations, if that is much better; a word of warning if nothing is."""
+    best, *rivals = register(found.silhouette, evidence)
+    if best.chamfer < _BETTER * found.best.chamfer:
+        notes = (*found.notes, "the garment was displaced and has been found again")
+        return replace(found, best=best, rivals=rivals, notes=notes)
+    if found.best.chamfer > 2 * displaced * evidence.scale:
+        warning = f"the model explains the picture badly (Chamfer distance {found.best.chamfer:.0f} px)"
+        return replace(found, notes=(*found.notes, warning))
+    return found
+
+
+def _explain(silhouette: Silhouette) -> _Explanation:
     if silhouette.folds:
-        first, *others = refit_fold(silhouette)
-        return first, others
+        best, *rivals = refit_fold(silhouette)
+        return _Explanation(silhouette, best, rivals)
     rigid = silhouette.minimise(silhouette.rest, (0, 1, 2), 15.0)
-    return silhouette.minimise(rigid.parameters, (0, 1, 2), 4.0), []
+    return _Explanation(silhouette, silhouette.minimise(rigid.parameters, (0, 1, 2), 4.0), [])
 
 
-def _ambiguous(silhouette: Silhouette, best: Refit, others: list[Refit], scale: float) -> bool:
-    rivals = [other for other in others if other.energy < _AS_GOOD * best.energy]
+def _ambiguous(found: _Explanation, scale: float) -> bool:
+    rivals = [rival for rival in found.rivals if rival.energy < _AS_GOOD * found.best.energy]
     if not rivals:
         return False
-    here = silhouette.moved(best.parameters).points()
+    here = found.silhouette.moved(found.best.parameters).points()
     for rival in rivals:
-        there = silhouette.moved(rival.parameters).points()
+        there = found.silhouette.moved(rival.parameters).points()
         if np.mean([np.hypot(*(here[name] - there[name])) for name in here]) > _DIFFERENT * scale:
             return True
     return False

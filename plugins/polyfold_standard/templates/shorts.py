@@ -23,10 +23,10 @@ def shorts_template() -> Template:
         penalties=leg_penalties(
             LegRanges(
                 slender=(0.88, 1.28),
-                rise=(0.68, 0.8),
-                crotch=(0.38, 0.62),
+                rise=(0.72, 0.78),
+                crotch=(0.44, 0.56),
                 gap=(0.05, 0.36),
-                leg=(0.48, 0.75),
+                leg=(0.5, 0.7),
                 cuff=(77.0, 97.0),
                 flare=(3.0, 20.0),
                 likeness=(0.86, 1.16),
