@@ -210,7 +210,11 @@ class Agent(Protocol):
 
 @runtime_checkable
 class GarmentKind(Protocol):
-    """A kind of garment: its polygon template and a generator of seeded instances."""
+    """A kind of garment: its polygon template and a generator of seeded instances.
+
+    With a class attribute ``pattern``, a :class:`polyfold.garments.Pattern` that says how it is sewn, real garments of
+    the kind can be twinned and meshes imported.
+    """
 
     kind: ClassVar[str]
 

@@ -91,19 +91,21 @@ def garment(
             raise GarmentError("the size of a seeded garment comes from its seed; give a mask, outline, image or mesh")
         return generator.generate(seed, edge_length)
     if mesh is not None:
-        return _from_mesh(kind, mesh, keypoints, size)
+        return _from_mesh(kind, mesh, keypoints, size, edge_length)
     from polyfold.garments import twin_from_outline
 
     found = ground(kind, mask=mask, outline=outline, image=image, experiment=experiment)
     return twin_from_outline(found.outline, kind, found.keypoints, size, edge_length)
 
 
-def _from_mesh(kind: str, mesh: str | Path, keypoints: str | Path | None, size: float | None) -> Garment:
+def _from_mesh(
+    kind: str, mesh: str | Path, keypoints: str | Path | None, size: float | None, edge_length: float
+) -> Garment:
     from polyfold.garments import load_obj
 
     if keypoints is None:
         raise GarmentError("a mesh needs named keypoints; give a JSON file of keypoint name -> vertex index")
-    return load_obj(mesh, keypoints, kind, size)
+    return load_obj(mesh, keypoints, kind, size, edge_length)
 
 
 def ground(
