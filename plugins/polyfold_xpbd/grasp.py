@@ -15,7 +15,7 @@ Floats = NDArray[np.float32]
 
 REACH = 0.015
 """A gripper holds the cloth, all layers of it, within this distance of the pick [m]."""
-RISING, FALLING, HIGHEST = 0.45, 0.35, 0.30
+RISING, FALLING, HIGHEST = 0.45, 0.25, 0.30
 """Height of the path's first and second half as shares of the distance from pick to place; upper limit [m].
 
 Lower on the way down: a flap that is laid down taut drags what lies below it along.
