@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from polyfold.garments import Garment
 from polyfold.polygon import Template
+from polyfold.scoring import Outcome
 from polyfold.types import Action, Decision, FoldLine, Observation, Scene, SimState, Subgoal
 
 __all__ = [
@@ -227,9 +228,10 @@ class GarmentKind(Protocol):
 
 @runtime_checkable
 class Metric(Protocol):
-    """Scores an episode's end against a reference."""
+    """Scores how an episode ended against one or more references; the nearest reference counts."""
 
     unit: ClassVar[str]
+    higher_is_better: ClassVar[bool]
 
-    def score(self, final: SimState, reference: SimState) -> float:
-        """The value, in ``unit``."""
+    def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
+        """The value, in ``unit``; NaN if there is nothing to measure."""

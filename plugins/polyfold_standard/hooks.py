@@ -22,10 +22,19 @@ def register_segmenters(register):
 def register_agents(register):
     """Register the agents: the whole method, and the two floors every result is compared with."""
     register("polyfold", "polyfold.agent:PolyFoldAgent", "segmenter, grounding, planner and policy")
+    register("oracle", "polyfold_standard.oracle:Oracle", "the task's true fold lines, picks by policy (privileged)")
     register("noop", "polyfold_standard.floors:Noop", "does nothing")
     register(
         "random", "polyfold_standard.floors:Random", "random picks on the cloth, places mirrored across a random line"
     )
+
+
+@hookimpl
+def register_metrics(register):
+    """Register the metrics."""
+    register("mppe", "polyfold_standard.metrics:MPPE", "mean particle position error [mm]")
+    register("miou", "polyfold_standard.metrics:MIoU", "IoU of the silhouettes")
+    register("moved-part", "polyfold_standard.metrics:MovedPartError", "mean error of what the reference moved [mm]")
 
 
 @hookimpl

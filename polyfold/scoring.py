@@ -1,0 +1,66 @@
+"""Scores: how near an episode's end is to a reference, and which results count as success.
+
+The paper names MPPE, mIoU and a success rate over thresholds that it does not publish (Sec. V-C). Ours are the presets
+below, side by side; the moved-part error is added because an untouched garment scores well on the other two where the
+moved part is small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.types import SimState
+
+__all__ = ["PRESETS", "Outcome", "Threshold", "succeeded"]
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """How an episode began and ended, for metrics; privileged.
+
+    Attributes:
+        start: state of the flat garment.
+        end: state after the last fold.
+        mask: the cloth in the last picture, bool, shape (H, W).
+    """
+
+    start: SimState
+    end: SimState
+    mask: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """A bound on a metric: at most ``bound`` where lower is better, at least ``bound`` where higher is."""
+
+    metric: str
+    bound: float
+    higher_is_better: bool = False
+
+    def holds(self, value: float) -> bool:
+        """Whether a value meets the bound; NaN (nothing to measure) does."""
+        return bool(np.isnan(value) or (value >= self.bound if self.higher_is_better else value <= self.bound))
+
+
+PRESETS: Mapping[str, Sequence[Threshold]] = {
+    "polyfold": (
+        Threshold("miou", 0.80, higher_is_better=True),
+        Threshold("mppe", 30.0),
+        Threshold("moved-part", 40.0),
+    ),
+    "strict": (
+        Threshold("miou", 0.90, higher_is_better=True),
+        Threshold("mppe", 12.5),
+        Threshold("moved-part", 20.0),
+    ),
+}
+"""What counts as success: ``polyfold`` is ours, ``strict`` asks for twice a particle radius as LangDef and BiFold."""
+
+
+def succeeded(values: Mapping[str, float], preset: str = "polyfold") -> bool:
+    """Whether metric values meet every threshold of a preset."""
+    return all(threshold.holds(values[threshold.metric]) for threshold in PRESETS[preset])
