@@ -79,7 +79,8 @@ def fit_flat(template: Template, evidence: Evidence, rotations: int = 24) -> lis
 def on_contour(template: Template, vertices: Floats, evidence: Evidence) -> Floats:
     """Vertices drawn onto the nearby contour: real corners are rounded, and the best polygon's lie outside of them.
 
-    A protruding corner goes to the point that protrudes most, any other to the nearest one.
+    A protruding corner goes to the point that protrudes most, any other to the nearest one. Only points along the same
+    stretch of the contour count: the corner of the other trouser leg may be near, too.
     """
     before, after = np.roll(vertices, 1, axis=0) - vertices, np.roll(vertices, -1, axis=0) - vertices
     before, after = (arm / np.maximum(np.linalg.norm(arm, axis=1, keepdims=True), 1e-9) for arm in (before, after))
@@ -94,7 +95,11 @@ def on_contour(template: Template, vertices: Floats, evidence: Evidence) -> Floa
     merit = np.where(
         (sharp & convex)[:, None], along - 0.5 * np.sqrt(np.maximum(distance**2 - along**2, 0.0)), -distance
     )
-    chosen = np.where(distance < reach, merit, -np.inf).argmax(1)
+    count = len(evidence.contour)
+    steps = np.abs(np.arange(count)[None] - distance.argmin(1)[:, None])
+    spacing = np.hypot(*(evidence.contour[1] - evidence.contour[0]))
+    here = (distance < reach) & (np.minimum(steps, count - steps) * spacing < 1.5 * reach)
+    chosen = np.where(here, merit, -np.inf).argmax(1)
     moved = (distance.min(1) < reach) & ~np.isin(template.names, template.covered)
     return np.where(moved[:, None], evidence.contour[chosen], vertices)
 

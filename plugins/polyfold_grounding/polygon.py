@@ -34,7 +34,9 @@ class PolygonGrounding:
         )
         rotations: int = Field(24, ge=4, le=360, description="headings tried in the first picture")
         displaced_px: float = Field(
-            5.0, gt=0.0, description="Chamfer distance above which a garment is searched at all rotations [px]"
+            1.5,
+            gt=0.0,
+            description="Chamfer distance [px, for a garment of 150 x 150 px] above which all rotations are searched",
         )
 
     def __init__(self, config: Config | None = None) -> None:

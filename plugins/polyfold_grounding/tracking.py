@@ -23,13 +23,16 @@ __all__ = ["Tracked", "first_model", "next_model"]
 Floats = NDArray[np.float64]
 
 _BETTER = 0.6
-"""A rarer explanation (displaced, fold failed) is believed when its distance is below this share of the usual one ..."""
+"""A rarer explanation (the fold failed) is believed if its distance is below this share of the usual one ..."""
 
 _MUCH_BETTER = 0.4
-"""... and a still rarer one (an earlier fold came undone) when it is below this share."""
+"""... and a still rarer one (displaced, an earlier fold came undone) if it is below this share."""
 
 _UNREMARKABLE = 2.0
 """A Chamfer distance [px at scale 1] that needs no rarer explanation."""
+
+_BAD = 6.0
+"""A Chamfer distance [px at scale 1] that the caller should know about."""
 
 _AS_GOOD = 1.15
 """Another explanation with up to this multiple of the energy makes a silhouette ambiguous ..."""
@@ -120,10 +123,10 @@ def _with_a_fold_undone(
 def _anywhere(found: _Explanation, evidence: Evidence, displaced: float) -> _Explanation:
     """The same model searched at all rotations, if that is much better; a word of warning if nothing is."""
     best, *rivals = register(found.silhouette, evidence)
-    if best.chamfer < _BETTER * found.best.chamfer:
+    if best.chamfer < _MUCH_BETTER * found.best.chamfer:
         notes = (*found.notes, "the garment was displaced and has been found again")
         return replace(found, best=best, rivals=rivals, notes=notes)
-    if found.best.chamfer > 2 * displaced * evidence.scale:
+    if found.best.chamfer > _BAD * evidence.scale:
         warning = f"the model explains the picture badly (Chamfer distance {found.best.chamfer:.0f} px)"
         return replace(found, notes=(*found.notes, warning))
     return found
