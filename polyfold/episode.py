@@ -51,6 +51,7 @@ class Step:
         action: the picks and places that were executed.
         observation: the picture it was decided on.
         seconds: time per stage (``grounding``, ``language``, ``policy``, ``execution``) [s].
+        after: the true state once the cloth has settled, for metrics.
     """
 
     index: int
@@ -60,6 +61,7 @@ class Step:
     action: Action
     observation: Observation
     seconds: dict[str, float]
+    after: SimState
 
 
 @dataclass(frozen=True)
@@ -140,6 +142,7 @@ def run_episode(
     simulator: Simulator | None = None,
     agent: Agent | None = None,
     task: Task | None = None,
+    agent_seed: int | None = None,
 ) -> Episode:
     """Run one episode from a sentence to the final picture.
 
@@ -150,9 +153,10 @@ def run_episode(
         experiment: the components.
         garment: what lies on the table.
         instruction: what to do with it.
-        seed: decides the pose on the table and the agent's random choices.
+        seed: decides the pose on the table, and the agent's random choices unless ``agent_seed`` does.
         simulator, agent: instances to reuse; by default they are constructed from the experiment.
         task: what guidance is made from, for agents that require some.
+        agent_seed: decides the agent's random choices.
 
     Raises:
         ConfigError: if the agent requires guidance and no task is given.
@@ -176,7 +180,7 @@ def run_episode(
             goal = Goal(
                 kind=garment.kind,
                 template=template,
-                seed=seed,
+                seed=seed if agent_seed is None else agent_seed,
                 **_told(agent.requires, instruction, transcript, simulator),
                 **_guidance(agent.requires, experiment, instruction, task, garment, initial_state, start),
             )
@@ -265,7 +269,16 @@ def _execute(simulator: Simulator, decision: Decision, seen: Observation, index:
     clock = time.perf_counter()
     after = simulator.execute(decision.action)
     seconds = {**decision.seconds, "execution": time.perf_counter() - clock}
-    step = Step(index, decision.subgoal, decision.fold_line, decision.scene, decision.action, seen, seconds)
+    step = Step(
+        index,
+        decision.subgoal,
+        decision.fold_line,
+        decision.scene,
+        decision.action,
+        seen,
+        seconds,
+        simulator.state(),
+    )
     return step, after
 
 

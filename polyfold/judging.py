@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 from polyfold import plugins
 from polyfold.episode import Episode
 from polyfold.errors import ConfigError, GroundingError
 from polyfold.ideal import fidelity
-from polyfold.tasks import Task, fold_lines, load_suite, recognise
+from polyfold.tasks import Suite, Task, fold_lines, load_suite, recognise
 from polyfold.types import FoldLine
 
-__all__ = ["find_task", "judge", "known_tasks"]
+__all__ = ["find_task", "judge", "known_tasks", "suite"]
+
+
+@cache
+def suite(name: str) -> Suite:
+    """A registered task suite by name. Raises PluginError if there is none."""
+    return load_suite(str(plugins.find("tasks", name).target))
 
 
 def known_tasks(kind: str) -> list[Task]:
     """The tasks of all installed suites for a kind of garment."""
-    suites = (load_suite(str(plugins.find("tasks", name).target)) for name in plugins.names("tasks"))
-    return [task for suite in suites for task in suite.for_garment(kind)]
+    return [task for name in plugins.names("tasks") for task in suite(name).for_garment(kind)]
 
 
 def find_task(task_id: str, kind: str) -> Task:

@@ -1,0 +1,96 @@
+"""Why an episode failed: the first error in the chain, found by comparing with what the oracle would have done.
+
+Stages in order (paper, Sec. VI): ``infrastructure``, ``grounding``, ``subgoal``, ``fold line``, ``policy``,
+``execution``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from polyfold.episode import Episode, Step
+from polyfold.references import Reference
+from polyfold.types import FoldLine
+
+__all__ = ["CAUSES", "attribute"]
+
+CAUSES = ("infrastructure", "grounding", "subgoal", "fold line", "policy", "execution")
+
+OFF = 0.05
+"""Share of the garment's span by which lines, vertices and landing places may be off."""
+TURNED = 10.0
+"""Degrees by which a fold line may be turned."""
+
+
+def attribute(episode: Episode, lines: Sequence[FoldLine], reference: Reference) -> str:
+    """The first cause of a failure.
+
+    Args:
+        episode: the failed episode.
+        lines: the oracle's fold lines [px], on the garment as it lay at the start.
+        reference: the oracle's states.
+    """
+    if episode.failure is not None:
+        return _of_failure(episode.failure.stage)
+    pixels = np.array(list(episode.initial_state.keypoint_pixels().values()))
+    span = float(np.ptp(pixels, axis=0).max())
+    for step, line in zip(episode.steps, lines, strict=False):
+        cause = _of_step(step, line, lines, span, episode, reference)
+        if cause is not None:
+            return cause
+    return "subgoal" if len(episode.steps) != len(lines) else "execution"
+
+
+def _of_failure(stage: str) -> str:
+    return {"refused": "subgoal", "grounding": "grounding", "planning": "fold line"}.get(stage, "execution")
+
+
+def _of_step(
+    step: Step, line: FoldLine, lines: Sequence[FoldLine], span: float, episode: Episode, reference: Reference
+) -> str | None:
+    """The cause if the fault lies in this step."""
+    if step.fold_line is None:
+        return None
+    if not _agree(step.fold_line, line, span):
+        if _vertices_off(step, episode) > OFF * span:
+            return "grounding"
+        meant_another = any(_agree(step.fold_line, other, span) for other in lines if other is not line)
+        return "subgoal" if meant_another or len(episode.subgoals) != len(lines) else "fold line"
+    landed = _landing_error(step, reference)
+    if landed is None or landed * episode.start.camera.pixels_per_metre <= OFF * span:
+        return None
+    return "policy" if _picks_off(step, span) else "execution"
+
+
+def _agree(planned: FoldLine, wanted: FoldLine, span: float) -> bool:
+    a, b = (np.subtract(line.end, line.start) / line.length for line in (planned, wanted))
+    middle = (np.asarray(wanted.start) + wanted.end) / 2
+    return bool(a @ b >= np.cos(np.radians(TURNED)) and abs(float(planned.distance(middle))) <= OFF * span)
+
+
+def _vertices_off(step: Step, episode: Episode) -> float:
+    """Mean distance [px] between fitted vertices and true keypoints before the step; 0 without a model."""
+    if step.scene is None or step.scene.model is None:
+        return 0.0
+    before = episode.initial_state if step.index == 0 else episode.steps[step.index - 1].after
+    truth = before.keypoint_pixels()
+    vertices = step.scene.model.vertices()
+    distances = [np.hypot(*(vertices[name].point - truth[name])) for name in truth if name in vertices]
+    return float(np.mean(distances)) if distances else 0.0
+
+
+def _landing_error(step: Step, reference: Reference) -> float | None:
+    """Mean particle distance [m] from the oracle's state after the same step."""
+    if step.index >= len(reference.after):
+        return None
+    return float(np.linalg.norm(step.after.positions - reference.after[step.index].positions, axis=1).mean())
+
+
+def _picks_off(step: Step, span: float) -> bool:
+    """Whether the picks lie nearer to the line than to the far side of what they lift."""
+    if step.scene is None or step.fold_line is None:
+        return False
+    depth = step.fold_line.distance(step.scene.contour).max()
+    return bool(step.fold_line.distance(step.action.picks).max() < 0.6 * depth)

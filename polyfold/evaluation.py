@@ -1,0 +1,86 @@
+"""One episode of a study: run, compare with the oracle, say why it failed. The unit of work that travels to workers."""
+
+from __future__ import annotations
+
+import math
+import resource
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from polyfold import plugins
+from polyfold.attribution import attribute
+from polyfold.episode import Episode, run_episode
+from polyfold.garments import Garment
+from polyfold.judging import suite
+from polyfold.references import Reference, reference_for
+from polyfold.scoring import PRESETS, Outcome, succeeded
+from polyfold.study import Cell, Study, experiment_of
+from polyfold.tasks import fold_lines
+
+__all__ = ["evaluate_cell"]
+
+
+@lru_cache(maxsize=8)
+def _garment(kind: str, seed: int, edge_length: float) -> Garment:
+    return plugins.create("garments", kind).generate(seed, edge_length)
+
+
+def evaluate_cell(study: Study, cell: Cell) -> dict[str, Any]:
+    """Run one episode and score it; plain data.
+
+    The pose depends on the garment's seed alone, so that all variants and wordings start from the same picture as the
+    oracle.
+    """
+    task = suite(study.suite).task(cell.task)
+    garment = _garment(cell.garment, cell.garment_seed, study.edge_length)
+    experiment = experiment_of(study, cell.variant)
+    reference = reference_for(task, garment, cell.garment_seed, experiment.simulator)
+    instruction = task.instructions[cell.wording] if task.instructions else ""
+    episode = run_episode(experiment, garment, instruction, cell.garment_seed, task=task, agent_seed=cell.seed)
+    values = _scores(episode, reference)
+    lines = fold_lines(task, episode.initial_state.keypoint_pixels())
+    success = {preset: episode.failure is None and succeeded(values, preset) for preset in PRESETS}
+    return {
+        "variant": cell.variant,
+        "task": cell.task,
+        "type": task.type,
+        "steps_wanted": len(task.steps),
+        "garment": cell.garment,
+        "garment_seed": cell.garment_seed,
+        "wording": cell.wording,
+        "instruction": instruction,
+        "subgoals": [subgoal.text for subgoal in episode.subgoals],
+        "steps": len(episode.steps),
+        "metrics": {name: _number(value) for name, value in values.items()},
+        "step_errors_mm": _step_errors(episode, reference),
+        "success": success,
+        "failure": None if episode.failure is None else vars(episode.failure),
+        "cause": None if success["polyfold"] else attribute(episode, lines, reference),
+        "privileged": episode.privileged,
+        "seconds": {stage: round(spent, 4) for stage, spent in episode.seconds.items()},
+        "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
+    }
+
+
+def _scores(episode: Episode, reference: Reference) -> Mapping[str, float]:
+    mask = episode.experiment.create("segmenters", "segmenter").segment(episode.final)
+    result = Outcome(episode.initial_state, episode.final_state, mask)
+    return {
+        name: plugins.create("metrics", name).score(result, [reference.outcome]) for name in plugins.names("metrics")
+    }
+
+
+def _step_errors(episode: Episode, reference: Reference) -> list[float | None]:
+    """Mean particle error [mm] after each of the episode's own steps, where the oracle has such a step."""
+    errors = []
+    for step, wanted in zip(episode.steps, reference.after, strict=False):
+        distance = np.linalg.norm(step.after.positions - wanted.positions, axis=1)
+        errors.append(_number(1000.0 * float(distance.mean())))
+    return errors
+
+
+def _number(value: float) -> float | None:
+    return round(float(value), 4) if math.isfinite(value) else None

@@ -1,0 +1,216 @@
+"""Studies: a grid of variants over tasks and garments, defined in TOML or in a few lines of Python.
+
+>>> import polyfold
+>>> study = polyfold.ablate(polyfold.load("experiments/smoke.toml"), "policy", ["caso", "farthest"])
+>>> results = polyfold.run(study, "runs/policies")
+>>> polyfold.table(results)
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import hashlib
+import itertools
+import tomllib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from polyfold.config import Experiment
+from polyfold.errors import ConfigError
+from polyfold.judging import suite
+from polyfold.tasks import Task
+
+__all__ = ["Cell", "Study", "ablate", "cells", "experiment_of", "grid", "load"]
+
+Overrides = dict[str, Any]
+
+
+class Study(BaseModel):
+    """What to run: a suite's tasks on seeded garments, once per variant.
+
+    Attributes:
+        name: what results are labelled with.
+        suite: registered task suite.
+        tasks: patterns of task ids (``tshirt-*``); all by default.
+        garments: number of garments per kind, seeds from ``first_seed`` on.
+        instructions: ``first`` asks with the first wording, ``in-turn`` with the next one on each garment, ``all`` with
+            each of them.
+        edge_length: mesh size [m].
+        seed: of the run; part of every episode's seed.
+        base: the experiment that variants start from, as dotted paths or nested tables.
+        variants: name -> overrides by dotted path, for example ``{"farthest": {"policy": "farthest"}}``.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str = Field(pattern=r"^[A-Za-z0-9_.-]{1,60}$")
+    suite: str = "polyfold70"
+    tasks: tuple[str, ...] = ("*",)
+    garments: int = Field(1, ge=1, le=10_000)
+    first_seed: int = Field(0, ge=0)
+    instructions: Literal["first", "in-turn", "all"] = "in-turn"
+    edge_length: float = Field(0.0155, gt=0.004, le=0.05)
+    seed: int = 0
+    base: Overrides = Field(default_factory=dict)
+    variants: dict[str, Overrides] = Field(default_factory=lambda: {"polyfold": {}}, min_length=1)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One episode of a study, by names alone, so that it travels to any worker."""
+
+    variant: str
+    task: str
+    garment: str
+    garment_seed: int
+    wording: int
+    seed: int
+
+    @property
+    def key(self) -> str:
+        """Unique name within the study."""
+        return f"{self.variant}/{self.task}/{self.garment_seed}/{self.wording}"
+
+
+def load(path: str | Path) -> Study:
+    """Read a study from TOML. Raises ConfigError with the file and the setting that is wrong."""
+    path = Path(path)
+    try:
+        settings = tomllib.loads(path.read_text("utf-8"))
+    except FileNotFoundError as error:
+        raise ConfigError(f"there is no file {path}; check the path") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path} is not valid TOML: {error}; correct it") from error
+    try:
+        study = Study(**{"name": path.stem, **settings})
+    except (ValidationError, TypeError) as error:
+        raise ConfigError(_problem(error, str(path))) from error
+    for variant in study.variants:
+        experiment_of(study, variant)
+    return study
+
+
+def _problem(error: Exception, source: str) -> str:
+    if not isinstance(error, ValidationError):
+        return f"{source}: {error}"
+    first = error.errors()[0]
+    where = ".".join(str(part) for part in first["loc"])
+    if first["type"] == "extra_forbidden":
+        return f"{source} has no setting {where!r}; {_nearest(where, list(Study.model_fields))}"
+    return f"{source} has a bad value for {where!r}: {first['msg']}; change it"
+
+
+def _nearest(name: str, known: Sequence[str]) -> str:
+    close = get_close_matches(name, known, n=1, cutoff=0.5)
+    return f"did you mean {close[0]!r}?" if close else f"the known ones are {', '.join(known)}"
+
+
+def ablate(base: Study, path: str, values: Sequence[Any], names: Sequence[str] | None = None) -> Study:
+    """A study with one variant per value of one setting.
+
+    Args:
+        base: the study to vary; its first variant is what the others differ from.
+        path: dotted path of the setting: ``"policy"``, ``"simulator.thickness"``.
+        values: its values.
+        names: names of the variants; by default the values.
+    """
+    return grid(base, {path: values}, names)
+
+
+def grid(base: Study, settings: dict[str, Sequence[Any]], names: Sequence[str] | None = None) -> Study:
+    """A study with one variant per combination of values; see :func:`ablate`."""
+    combinations = [dict(zip(settings, values, strict=True)) for values in itertools.product(*settings.values())]
+    names = names or [", ".join(_shown(value) for value in combination.values()) for combination in combinations]
+    if len(names) != len(combinations):
+        raise ConfigError(f"{len(combinations)} variants need as many names, not {len(names)}")
+    common = next(iter(base.variants.values()))
+    variants = {name: {**common, **combination} for name, combination in zip(names, combinations, strict=True)}
+    study = base.model_copy(update={"variants": variants})
+    for variant in variants:
+        experiment_of(study, variant)
+    return study
+
+
+def _shown(value: Any) -> str:
+    return str(value["name"]) if isinstance(value, dict) and "name" in value else str(value)
+
+
+def experiment_of(study: Study, variant: str) -> Experiment:
+    """The experiment of a variant. Raises ConfigError naming the wrong dotted path and the nearest right one."""
+    settings: dict[str, Any] = {}
+    for path, value in {**_flat(study.base), **_flat(study.variants[variant])}.items():
+        field, _, parameter = path.partition(".")
+        if field not in Experiment.model_fields:
+            raise ConfigError(f"variant {variant!r} sets {path!r}; {_nearest(field, list(Experiment.model_fields))}")
+        if not parameter:
+            settings[field] = value
+            continue
+        choice = settings.get(field, getattr(Experiment(), field).name)
+        named = {"name": choice} if isinstance(choice, str) else dict(choice)
+        settings[field] = {**named, parameter: value}
+    experiment = Experiment.of(**settings)
+    _check_parameters(experiment, variant)
+    return experiment
+
+
+def _flat(settings: Overrides) -> Overrides:
+    """Nested tables as dotted paths; a table with a name stays a component."""
+    flat: Overrides = {}
+    for key, value in settings.items():
+        if isinstance(value, dict) and "name" not in value:
+            flat |= {f"{key}.{inner}": content for inner, content in value.items()}
+        else:
+            flat[key] = value
+    return flat
+
+
+def _check_parameters(experiment: Experiment, variant: str) -> None:
+    from polyfold import plugins
+
+    kinds = {"policy": "policies"}
+    for field in Experiment.model_fields:
+        choice = getattr(experiment, field)
+        if isinstance(choice, str) or not choice.params:
+            continue
+        config = getattr(
+            plugins.component_class(kinds.get(field, f"{field}s"), choice.name.partition(":")[0]), "Config", None
+        )
+        known = list(config.model_fields) if config is not None else []
+        for parameter in choice.params:
+            if parameter not in known:
+                raise ConfigError(
+                    f"variant {variant!r} sets '{field}.{parameter}', which {choice.name!r} does not have; "
+                    + _nearest(f"{field}.{parameter}", [f"{field}.{name}" for name in known])
+                )
+
+
+def cells(study: Study) -> Iterator[Cell]:
+    """Every episode of a study, in a fixed order that mixes kinds, so that progress is representative."""
+    chosen = _chosen_tasks(study)
+    for index in range(study.garments):
+        for task, variant in itertools.product(chosen, study.variants):
+            garment_seed = study.first_seed + index
+            for wording in _wordings(study, task, index):
+                name = f"{study.seed}/{task.id}/{garment_seed}/{wording}"
+                seed = int.from_bytes(hashlib.sha256(name.encode()).digest()[:4], "big")
+                yield Cell(variant, task.id, task.garment, garment_seed, wording, seed)
+
+
+def _chosen_tasks(study: Study) -> list[Task]:
+    tasks = suite(study.suite).tasks
+    for pattern in study.tasks:
+        if not any(fnmatch.fnmatch(task.id, pattern) for task in tasks):
+            raise ConfigError(
+                f"no task of {study.suite!r} matches {pattern!r}; {_nearest(pattern, [task.id for task in tasks])}"
+            )
+    return [task for task in tasks if any(fnmatch.fnmatch(task.id, pattern) for pattern in study.tasks)]
+
+
+def _wordings(study: Study, task: Task, index: int) -> Sequence[int]:
+    count = max(1, len(task.instructions))
+    return {"first": [0], "in-turn": [index % count], "all": range(count)}[study.instructions]
