@@ -51,7 +51,11 @@ def folded_boundary(boundary, outline, centre, pivot, angle, parameters):
     nx, ny = dy, -dx
     count = len(boundary)
     spacing = np.hypot(boundary[1, 0] - boundary[0, 0], boundary[1, 1] - boundary[0, 1])
-    room = count + 2 * int(2000 / max(spacing, 0.5))
+    reach = 0.0
+    for i in range(len(outline)):
+        reach = max(reach, np.hypot(outline[i, 0] - pivot[0], outline[i, 1] - pivot[1]))
+    steps = int(2 * reach / max(spacing, 0.5)) + 1
+    room = count + steps
     points, slopes = np.empty((room, 2)), np.zeros((room, 2, 5))
     joined = np.zeros(room, np.bool_)
     used, last, last_left = 0, -2, False
@@ -74,8 +78,6 @@ def folded_boundary(boundary, outline, centre, pivot, angle, parameters):
         last, last_left = i, left
         used += 1
     previous = False
-    reach = 1000.0
-    steps = int(2 * reach / max(spacing, 0.5))
     ox, oy = pivot[0] + offset * nx, pivot[1] + offset * ny
     for k in range(steps):
         t = -reach + k * spacing

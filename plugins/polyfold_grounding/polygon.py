@@ -62,7 +62,7 @@ class PolygonGrounding:
         if previous is None or previous.model is None:
             tracked = first_model(template, evidence, self.config.rotations, self.config.optimizer)
         else:
-            tracked = next_model(previous.model, fold_line, evidence, self.config.displaced_px)
+            tracked = next_model(previous.model, previous.contour, fold_line, evidence, self.config.displaced_px)
         return self._scene(template, mask, evidence.contour, tracked.model, tracked.chamfer, tracked.notes)
 
     def _scene(

@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 _WEIGHT = 3.0
 
-_SIGMAS = np.array([8.0, 8.0, np.radians(4.0), 3.0, np.radians(1.5)])
+_SIGMAS = np.array([15.0, 15.0, np.radians(8.0), 3.0, np.radians(1.5)])
 """How far a fold usually moves the garment, and misses its line: shift [px at scale 1], turn, offset [px], turn."""
 
 _FAR = 1e5
@@ -49,13 +49,23 @@ class Refit:
 
 
 class Silhouette:
-    """A model's silhouette before its last fold, ready to be folded along a line, moved and compared."""
+    """A silhouette before a fold, ready to be folded along a line, moved and compared.
 
-    def __init__(self, model: FoldedModel, line: FoldLine | None, evidence: Evidence) -> None:
+    Args:
+        model: the model before the fold.
+        line: the fold line, or None if nothing was folded.
+        evidence: the picture to explain.
+        seen: the contour that was seen before the fold [px], shape (N, 2): better than the model's own outline, whose
+            edges are straight. None takes that outline.
+    """
+
+    def __init__(
+        self, model: FoldedModel, line: FoldLine | None, evidence: Evidence, seen: Floats | None = None
+    ) -> None:
         self._model, self._line, self._evidence = model, line, evidence
-        self._outline = np.ascontiguousarray(model.outline())
+        after = model.fold(line).outline() if line else model.outline()
+        self._outline = np.ascontiguousarray(model.outline() if seen is None else _simplified(seen))
         self._boundary = resample(self._outline, 240)
-        after = model.fold(line).outline() if line else self._outline
         self.centre = (after.min(0) + after.max(0)) / 2
         if line is None:
             self._pivot, self._angle = self.centre, 0.0
@@ -142,6 +152,13 @@ class Silhouette:
             weight * gradient + prior,
             weight * hessian + np.diag(precision),
         )
+
+
+def _simplified(contour: Floats) -> Floats:
+    """The contour with fewer corners, nowhere more than half a pixel off."""
+    import cv2
+
+    return cv2.approxPolyDP(contour.astype(np.float32), 0.5, True)[:, 0, :].astype(float)
 
 
 def refit_fold(silhouette: Silhouette) -> list[Refit]:

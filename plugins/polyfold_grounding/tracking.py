@@ -66,17 +66,28 @@ def first_model(template: Template, evidence: Evidence, rotations: int, optimize
     return Tracked(model, _distance_to(model, evidence), notes)
 
 
-def next_model(model: FoldedModel, line: FoldLine | None, evidence: Evidence, displaced: float) -> Tracked:
-    """Follow a model to the next picture, after a fold along ``line`` or after nothing was folded."""
-    found = _as_planned(model, line, evidence)
+def next_model(
+    model: FoldedModel, seen: Floats, line: FoldLine | None, evidence: Evidence, displaced: float
+) -> Tracked:
+    """Follow a model to the next picture, after a fold along ``line`` or after nothing was folded.
+
+    Args:
+        model: the model of the picture before.
+        seen: the contour in the picture before [px], shape (N, 2).
+        line: the fold line [px], in the picture before.
+        evidence: the picture now.
+        displaced: Chamfer distance [px at scale 1] above which all rotations are searched.
+    """
+    found = _as_planned(model, seen, line, evidence)
     if found.best.chamfer > _UNREMARKABLE * evidence.scale:
-        found = min([found, *_with_a_fold_undone(model, line, evidence, found)], key=_judged)
+        found = min([found, *_with_a_fold_undone(model, seen, line, evidence, found)], key=_judged)
     if found.best.chamfer > displaced * evidence.scale:
         found = _anywhere(found, evidence, displaced)
     notes = found.notes
     if _ambiguous(found, evidence.scale):
         notes += ("ambiguous silhouette: another pose of the garment explains it as well",)
-    return Tracked(found.silhouette.moved(found.best.parameters), found.best.chamfer, notes)
+    moved = found.silhouette.moved(found.best.parameters)
+    return Tracked(moved, _distance_to(moved, evidence), notes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,21 +106,21 @@ def _judged(explanation: _Explanation) -> float:
     return explanation.best.chamfer / explanation.share
 
 
-def _as_planned(model: FoldedModel, line: FoldLine | None, evidence: Evidence) -> _Explanation:
+def _as_planned(model: FoldedModel, seen: Floats, line: FoldLine | None, evidence: Evidence) -> _Explanation:
     try:
-        return _explain(Silhouette(model, line, evidence))
+        return _explain(Silhouette(model, line, evidence, seen))
     except PlanError as problem:
-        still = _explain(Silhouette(model, None, evidence))
+        still = _explain(Silhouette(model, None, evidence, seen))
         return replace(still, notes=(f"no fold was added to the model: {problem}",))
 
 
 def _with_a_fold_undone(
-    model: FoldedModel, line: FoldLine | None, evidence: Evidence, planned: _Explanation
+    model: FoldedModel, seen: Floats, line: FoldLine | None, evidence: Evidence, planned: _Explanation
 ) -> Iterator[_Explanation]:
     """What it would be if the last fold had not taken effect, or an earlier one had come undone."""
     if planned.silhouette.folds:
         note = "the last fold did not take effect; the garment looks as it did before it"
-        yield replace(_explain(Silhouette(model, None, evidence)), notes=(note,), share=_BETTER)
+        yield replace(_explain(Silhouette(model, None, evidence, seen)), notes=(note,), share=_BETTER)
     for number in range(1, len(model.folds) + 1):
         others = model.folds[: number - 1] + model.folds[number:]
         opened = FoldedModel(model.rest, model.names, model.descriptions, others, model.kind)
@@ -137,7 +148,7 @@ def _explain(silhouette: Silhouette) -> _Explanation:
         best, *rivals = refit_fold(silhouette)
         return _Explanation(silhouette, best, rivals)
     rigid = silhouette.minimise(silhouette.rest, (0, 1, 2), 15.0)
-    return _Explanation(silhouette, silhouette.minimise(rigid.parameters, (0, 1, 2), 4.0), [])
+    return _Explanation(silhouette, silhouette.minimise(rigid.parameters, (0, 1, 2), 4.0, anchored=False), [])
 
 
 def _ambiguous(found: _Explanation, scale: float) -> bool:
