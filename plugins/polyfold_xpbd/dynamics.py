@@ -12,6 +12,8 @@ __all__ = ["DIVERGED", "RUNNING", "SETTLED", "advance"]
 RUNNING, SETTLED, DIVERGED = 0, 1, 2
 LOOK_EVERY = 5
 """Substeps between looks at who is near whom and which way the sheet faces."""
+LOOK_AFTER = 0.8
+"""Look earlier once the fastest particle may have come this far, in pads: a falling flap must not pass unseen."""
 BEND_EVERY = 2
 """Substeps per bending step: bending is slow against stretching, and stable far beyond this."""
 
@@ -125,14 +127,16 @@ def _is_finite(x):
 
 @njit(cache=True, fastmath=True)
 def _velocities(x, previous, v, inverse_dt):
-    energy = np.float32(0.0)
+    energy, fastest_2 = np.float32(0.0), np.float32(0.0)
     for i in range(x.shape[0]):
         vx = (x[i, 0] - previous[i, 0]) * inverse_dt
         vy = (x[i, 1] - previous[i, 1]) * inverse_dt
         vz = (x[i, 2] - previous[i, 2]) * inverse_dt
         v[i, 0], v[i, 1], v[i, 2] = vx, vy, vz
-        energy += vx * vx + vy * vy + vz * vz
-    return energy
+        speed_2 = vx * vx + vy * vy + vz * vz
+        energy += speed_2
+        fastest_2 = max(fastest_2, speed_2)
+    return energy, fastest_2
 
 
 @njit(cache=True, fastmath=True)
@@ -157,7 +161,8 @@ def advance(
     """Run substeps ``first`` to ``last`` in place; stop early once slow (``rest_speed`` > 0) for ten substeps.
 
     Args (beyond the model's arrays and the state's buffers):
-        clock: substeps since the stage began and for how many the cloth has been slow, int64, shape (2,).
+        clock: substeps since the stage began, for how many the cloth has been slow, and how far the fastest particle
+            may have come since the last look [nm], int64, shape (3,).
         settings: dt, radius, thickness, pad, table and cloth friction, relaxation, cap, floor, top speed, float32.
 
     Returns:
@@ -177,7 +182,8 @@ def advance(
             _carry(x, grasped, offsets, arm, directions, path, angles, k)
             _hold_back(x, mobility, tied, anchors, lengths)
         _stretch(x, mobility, edges, rest_lengths)
-        if clock[0] % LOOK_EVERY == 0:
+        if clock[0] % LOOK_EVERY == 0 or clock[2] > LOOK_AFTER * pad * 1e9:
+            clock[2] = 0
             if not _is_finite(x):
                 return DIVERGED, k
             vertex_normals(x, corners, use, normals)
@@ -199,7 +205,8 @@ def advance(
             radius, thickness, cloth_friction, relaxation, cap, settings[10],
         )
         _table(x, previous, mobility, supported, rests, floor, table_friction)
-        energy = _velocities(x, previous, v, inverse_dt)
+        energy, fastest_2 = _velocities(x, previous, v, inverse_dt)
+        clock[2] += int(np.sqrt(fastest_2) * dt * np.float32(1e9))
         if rest_speed > 0:
             clock[1] = clock[1] + 1 if energy < x.shape[0] * rest_speed * rest_speed else 0
             if clock[1] >= 10:

@@ -73,7 +73,7 @@ class Solver:
         self._second, self._old_second = np.zeros(capacity, np.uint32), np.zeros(capacity, np.uint32)
         self._side, self._old_side = np.zeros((capacity, 2), np.int8), np.zeros((capacity, 2), np.int8)
         self._pair_normal = np.zeros((capacity, 3), np.float32)
-        self._clock = np.zeros(2, np.int64)
+        self._clock = np.zeros(3, np.int64)
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
