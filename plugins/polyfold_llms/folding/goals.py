@@ -101,6 +101,8 @@ def _repeat(garment: Garment, times: int, first: Fold | None = None) -> list[Fol
 
 def fold_for_goal(garment: Garment, goal: str, steps: int | None) -> list[Fold]:
     """Folds that reach a named result from what has been folded so far; ``steps`` if a number was asked for."""
+    if steps is not None and not 1 <= steps <= MAX_HALVES:
+        raise NotUnderstoodError(f"I know no way to fold a {garment.spoken} in {steps} steps")
     recipe = {"tshirt": _tshirt, "pants": _pants, "quad": _quad}.get(garment.family, _quad)
     folds = recipe(garment, goal, steps)
     if not folds:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from polyfold_llms.folding.clauses import folds_of_frame, parts_of
+from polyfold_llms.folding.assembly import frames_of
+from polyfold_llms.folding.clause import parts_of
+from polyfold_llms.folding.clauses import folds_of_frame
+from polyfold_llms.folding.ellipsis import completed
 from polyfold_llms.folding.folds import Fold
-from polyfold_llms.folding.frames import Frame, Request, frames_of
+from polyfold_llms.folding.frames import Frame, Request
 from polyfold_llms.folding.goals import fold_for_goal
 from polyfold_llms.folding.parts import Garment, NotUnderstoodError
 from polyfold_llms.folding.tokens import Sentence, read
@@ -37,10 +40,12 @@ def understand(text: str, garment: Garment) -> Meaning:
     _check_words(request, sentence)
     for wrong, right in sentence.corrections:
         garment.note(f"I read “{wrong}” as “{right}”.")
+    for word in request.passed:
+        garment.note(f"I pass over the word “{word}”, which I do not know.")
     _give_context(request.frames)
     barred = _barred(request, garment)
     start = len(garment.folds)
-    frames = _merged([frame for frame in request.frames if not frame.negated])
+    frames = completed([frame for frame in request.frames if not _only_bars(frame)])
     if not frames:
         raise NotUnderstoodError("it names nothing that should be folded")
     _fold_frames(frames, garment, request.steps)
@@ -78,6 +83,12 @@ def _check_words(request: Request, sentence: Sentence) -> None:
             raise NotUnderstoodError(f"I do not understand “{frame.unknown[0]}”")
 
 
+def _only_bars(frame: Frame) -> bool:
+    """Whether the clause says only what not to fold."""
+    says = frame.specific or frame.fractions or frame.goals or frame.targets or frame.manners or frame.directions
+    return frame.negated or bool(frame.excluded and not says and not any(p.garments for p in frame.moving))
+
+
 def _give_context(frames: list[Frame]) -> None:
     """Tell every clause which noun was mentioned last before it, for *the right one* and *the other*."""
     last = None
@@ -113,33 +124,6 @@ def _barred(request: Request, garment: Garment) -> set[tuple[str, str]]:
     return barred
 
 
-def _merged(frames: list[Frame]) -> list[Frame]:
-    """Join clauses that make sense only together, such as *take the hem* and *fold it up*."""
-    merged: list[Frame] = []
-    for frame in frames:
-        previous = merged[-1] if merged else None
-        if previous is not None and _continues(previous, frame):
-            merged[-1] = _joined(previous, frame)
-        else:
-            merged.append(frame)
-    return merged
-
-
-def _continues(previous: Frame, frame: Frame) -> bool:
-    pronoun = bool(frame.moving) and all(not p.names_part and not p.garments for p in frame.moving)
-    if previous.specific and not (previous.targets or previous.directions or previous.fractions or previous.goals):
-        return not frame.specific and (pronoun or not frame.moving) and frame.placed and not frame.fractions
-    return False
-
-
-def _joined(first: Frame, second: Frame) -> Frame:
-    return replace(
-        second, moving=first.moving, verbs=first.verbs + second.verbs, leads=first.leads or second.leads,
-        excluded=first.excluded + second.excluded, axes=first.axes + second.axes,
-        manners=first.manners + second.manners,
-    )  # fmt: skip
-
-
 def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> None:
     explicit = any(_explicit(frame) for frame in frames)
     previous: Frame | None = None
@@ -148,6 +132,8 @@ def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> No
         if _describes(frame, frames[number + 1 :]):
             continue
         vague = not (_explicit(frame) or frame.goals or frame.fractions)
+        if vague and garment.folds and not (frame.same or frame.again):
+            continue
         if vague and explicit and (previous is None or not (frame.same or frame.again)):
             continue
         if frame.goals and explicit and not _explicit(frame) and frame.goals[0] in ("tidy", "store"):
@@ -161,9 +147,17 @@ def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> No
         latest = frame
         if not (frame.same or frame.elliptical) or previous is None:
             previous = frame
+    if steps and _repeatable(frames):
+        while latest is not None and 0 < len(garment.folds) < min(steps, MAX_FOLDS):
+            garment.folds += folds_of_frame(latest, garment, None, None)
     if not garment.folds:
         for fold in fold_for_goal(garment, "default", steps):
             garment.folds.append(fold)
+
+
+def _repeatable(frames: list[Frame]) -> bool:
+    """Whether a stated number of folds can mean one clause done so often: *two diagonal folds*."""
+    return len(frames) == 1 and not (frames[0].specific or frames[0].targets or frames[0].goals)
 
 
 def _describes(frame: Frame, later: list[Frame]) -> bool:

@@ -135,9 +135,8 @@ def _reading(noun: str | None, phrase: NounPhrase, garment: Garment) -> str:
         return "sleeve"
     if noun in ("third", "quarter"):
         return "band"
-    if noun in ("corner", "tip"):
-        return "corner"
-    if noun is None and phrase.sides and all(len(group) == 2 for group in phrase.sides):
+    two_sides = bool(phrase.sides) and all(len(group & set(EDGES)) == 2 for group in phrase.sides)
+    if noun in ("corner", "tip") or (two_sides and garment.family == "quad"):
         return "corner"
     return "edge"
 
@@ -193,6 +192,9 @@ def _unsided_corners(phrase: NounPhrase, garment: Garment, role: str) -> list[st
         garment.note("The instruction leaves open which two neighbouring corners; I take the bottom ones.")
         return ["bottom_left", "bottom_right"]
     if phrase.quantity == "other":
+        acute = [corner for corner in left if last is None or corner != OPPOSITE_CORNER[last]]
+        if phrase.number == 2 and len(moved) == 1 and garment.folds[-1].target == OPPOSITE_CORNER[moved[0]]:
+            return acute
         if phrase.plural or phrase.number or len(left) == 1:
             if phrase.number not in (None, 1, len(left)):
                 raise NotUnderstoodError(f"{len(left)} corners are left, not {phrase.number}")
@@ -216,7 +218,7 @@ def _unsided_corners(phrase: NounPhrase, garment: Garment, role: str) -> list[st
 def _edges(phrase: NounPhrase, garment: Garment, role: str, noun: str | None) -> list[Part]:
     fixed = _fixed_edge(noun, garment)
     if fixed:
-        if noun == "shoulder" and phrase.sides and role == "moving":
+        if noun == "shoulder" and phrase.sides and role in ("moving", "target"):
             return [Part("edge", side) for group in phrase.sides for side in sorted(group) if side in EDGES]
         single = len(phrase.sides) == 1 and bool(phrase.sides[0] & {"left", "right"})
         if noun in ("legends", "hem", "cuff") and garment.family == "pants" and single and role == "moving":

@@ -41,6 +41,11 @@ class NounPhrase:
     text: str = ""
 
     @property
+    def names_it(self) -> bool:
+        """Whether anything but a quantity is said."""
+        return bool(self.noun or self.sides or self.pronoun or self.garments)
+
+    @property
     def names_part(self) -> bool:
         """Whether a particular part is meant, not the whole garment or a pronoun."""
         return bool(self.noun or self.sides or (self.quantity and not self.garments and self.pronoun != "it"))
@@ -89,6 +94,9 @@ def noun_phrase(tokens: Sequence[Token], at: int) -> tuple[NounPhrase, int]:
             if token.value == "one" and starts_noun_phrase(tokens, at + 1) and not group and not found.quantity:
                 found = replace(found, number=1)
                 at += 1
+                continue
+            if token.value == "one" and found.quantity and at + 1 < len(tokens) and tokens[at + 1].is_("prep", "of"):
+                at += 2
                 continue
             if found.noun or found.garments:
                 break

@@ -72,6 +72,8 @@ SIZE = re.compile(
     r"(?:the |its |their )?"
     r"(?:\w+ )?(?:size|area|footprint)\b"
 )
+PLURAL_FOLDS = re.compile(r"\b(\w+)\s+(diagonal |half |simple |straight |single )?folds\b")
+LISTED = re.compile(r"(?:^|(?<=[\s.,;]))\(?\d[.)]\s")
 TIMES = re.compile(r"\b(\d+|[a-z]+)\s+(?:more |separate |whole )?times\b(?! smaller)")
 
 
@@ -101,7 +103,9 @@ class Sentence:
 def read(text: str) -> Sentence:
     """Tag an instruction."""
     plain = _plain(text)
+    plain = LISTED.sub(". ", plain)
     plain = COUNTED.sub(_count("stepcount"), plain)
+    plain = PLURAL_FOLDS.sub(_count("stepcount", keep=2), plain)
     plain = TIMES.sub(_count("timescount"), plain)
     words = re.findall(r"[a-z0-9']+|[.,;:!?()]", plain)
     corrections: list[tuple[str, str]] = []
@@ -134,10 +138,13 @@ def _plain(text: str) -> str:
     return text.replace("-", " ").replace("/", " ").replace('"', " ").replace("centre's", "centre")
 
 
-def _count(name: str):
+def _count(name: str, keep: int = 0):
+    """Replace a counted noun by one word that carries the number; ``keep`` is a group to leave in the text."""
+
     def replace(match: re.Match[str]) -> str:
         number = _number(match.group(1))
-        return match.group(0) if number is None else f" {name}{number} "
+        kept = f"{match.group(keep) or ''} fold" if keep else ""
+        return match.group(0) if number is None else f" {kept} {name}{number} "
 
     return replace
 
@@ -215,6 +222,8 @@ def _tag(words: list[str]) -> list[Token]:
     at = 0
     while at < len(words):
         token, used = _match(words, at)
+        if token is not None and token.category == "frac" and words[at] == "half" and tokens and tokens[-1].is_("side"):
+            token, used = Token("noun", "half", "half"), 1
         if token is not None:
             tokens.append(token)
         at += used
@@ -250,7 +259,20 @@ def _match(words: list[str], at: int) -> tuple[Token | None, int]:
         return Token("number", str(_number(word)), word), 1
     if any(variant in fillers() for variant, _ in _variants(word)) or word.endswith("ly"):
         return None, 1
-    return Token("unknown", word, word), 1
+    adjective = at > 0 and words[at - 1] in (
+        "the",
+        "a",
+        "an",
+        "its",
+        "my",
+        "your",
+        "this",
+        "that",
+        "two",
+        "both",
+        "neat",
+    )
+    return Token("unknown", word, word, form="adjective" if adjective else "base"), 1
 
 
 FILLER_WORDS = frozenset(fillers())

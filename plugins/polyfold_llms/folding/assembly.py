@@ -1,0 +1,478 @@
+"""From tagged tokens to clauses in the order in which they are to be done."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from polyfold_llms.folding.frames import Frame, Request, in_order
+from polyfold_llms.folding.lookahead import (
+    LINES,
+    SEAMS,
+    SHAPES,
+    SPANS,
+    clause_ends,
+    described,
+    is_centre,
+    keeps_manner,
+    order_list,
+    side_before_side,
+    verb_ahead,
+)
+from polyfold_llms.folding.phrases import NounPhrase, noun_phrase, starts_noun_phrase
+from polyfold_llms.folding.tokens import Token
+
+__all__ = ["frames_of"]
+
+
+def frames_of(tokens: Sequence[Token]) -> Request:
+    """Assemble the clauses of a tagged instruction."""
+    return _Assembler(tokens).run()
+
+
+class _Assembler:
+    """Walks over the tokens once; ``role`` is what the next noun phrase will be."""
+
+    def __init__(self, tokens: Sequence[Token]) -> None:
+        self.tokens = tokens
+        self.done: list[tuple[str, Frame]] = []
+        self.frame = Frame()
+        self.order = "then"
+        self.role = "moving"
+        self.purpose = False
+        self.spanning = False
+        self.spanning_from = False
+        self.shaping = False
+        self.joined = False
+        self.comma = False
+        self._named_last = False
+        self._line_last = False
+        self.sentence_start = 0
+        self.skip_to = 0
+        self.garments: list[str] = []
+        self.several = False
+        self.passed: list[str] = []
+        self.steps: int | None = None
+
+    def run(self) -> Request:
+        at = 0
+        while at < len(self.tokens):
+            if at < self.skip_to:
+                at += 1
+                continue
+            token = self.tokens[at]
+            if side_before_side(self.tokens, at):
+                self._lead(NounPhrase(sides=(frozenset({token.value}),)))
+                at += 3
+                continue
+            if token.text in ("crease", "quarter") and self.frame.empty and starts_noun_phrase(self.tokens, at + 1):
+                self.frame.verbs.append("crease" if token.text == "crease" else "fold")
+                self.frame.fractions += ["quarter"] if token.text == "quarter" else []
+                at += 1
+                continue
+            if starts_noun_phrase(self.tokens, at) and not self._ordinal(at) and not self._shape(at):
+                phrase, at = noun_phrase(self.tokens, at)
+                self._add_phrase(phrase, at)
+                self._line_last = bool(self.frame.axes) and self.frame.axes[-1] is phrase and phrase.noun in LINES
+                self.joined = False
+                self._named_last = True
+                continue
+            getattr(self, f"_on_{token.category}")(token, at)
+            self._named_last = False
+            self._line_last = False
+            self.comma = token.is_("join", "comma")
+            self.joined = token.is_("join") or (self.joined and token.category in ("neg", "quant"))
+            at += 1
+        self._close()
+        return Request(in_order(self.done), self.garments, self.steps, self.several, tuple(self.passed))
+
+    # Order -----------------------------------------------------------------------------------------------------------
+
+    def _close(self, order: str = "then") -> None:
+        if self.frame.empty and self.frame.leads is not None:
+            self.frame.moving.append(self.frame.leads)
+        if not self.frame.empty:
+            self.done.append((self.order, self.frame))
+            self.order = order
+        elif order != "then":
+            self.order = order
+        self.frame = Frame()
+        self.role, self.purpose, self.spanning, self.shaping = "moving", False, False, False
+        self.spanning_from = False
+
+    def _on_stop(self, token: Token, at: int) -> None:
+        self._close("sentence")
+        self.sentence_start = len(self.done)
+
+    def _comes_earlier(self, at: int) -> bool:
+        """``..., but fold the sleeves in first``."""
+        ends = clause_ends(self.tokens, at + 1) and not self._named_last
+        return ends and bool(self.frame.verbs and self.done)
+
+    def _on_seq(self, token: Token, at: int) -> None:
+        at_start = self.frame.empty and len(self.done) == self.sentence_start
+        if token.value == "then":
+            self._close()
+        elif (
+            token.value == "first"
+            and clause_ends(self.tokens, at + 1)
+            and self.frame.verbs
+            and self.done
+            and not self._named_last
+        ):
+            self.order = "earlier"
+        elif token.value == "first":
+            if self.purpose and self.frame.moving and not self.frame.verbs:
+                self.frame.leads = self.frame.moving.pop()
+                self.purpose = False
+            elif self.frame.moving and clause_ends(self.tokens, at + 1):
+                self.frame.leads = self.frame.moving[-1] if self.frame.moving[-1].names_part else None
+                if self.frame.elliptical and self.frame.leads is not None and not self.frame.placed and self.done:
+                    self.done[-1][1].leads = self.frame.leads
+                    self.frame = Frame()
+        elif token.value == "start":
+            self.role = "leads"
+        elif token.value == "after" and not (
+            starts_noun_phrase(self.tokens, at + 1) or (at + 1 < len(self.tokens) and self.tokens[at + 1].is_("verb"))
+        ):
+            pass
+        elif token.value == "after" and not at_start:
+            self._close("earlier")
+        elif token.value == "before" and at_start:
+            self._close("later")
+        elif token.value == "before":
+            self._close()
+        elif token.value == "butfirst":
+            self._close("earlier")
+
+    def _ordinal(self, at: int) -> bool:
+        """``second`` is a quantity only before a part: ``the second sleeve``."""
+        token = self.tokens[at]
+        if token.text == "second" or token.text == "third":
+            following = self.tokens[at + 1] if at + 1 < len(self.tokens) else None
+            if (
+                token.text == "third"
+                and self.frame.empty
+                and (following is None or following.category in ("join", "verb"))
+            ):
+                self._close()
+                return True
+            return token.text == "second" and (
+                following is None or following.category not in ("noun", "side", "pronoun")
+            )
+        return False
+
+    # Verbs -----------------------------------------------------------------------------------------------------------
+
+    def _on_verb(self, token: Token, at: int) -> None:
+        value = token.value
+        if self.shaping and value == "tidy":
+            self.frame.goals.append("tidy")
+            return
+        if token.text.startswith(("slant", "angl", "slop", "tilt", "skew", "inclin")):
+            self.frame.manners.append("slanted")
+        if value.startswith("bad"):
+            self.frame.refused.append(token.text)
+            return
+        if value == "leave" and token.form == "ing" and keeps_manner(self.tokens, at + 1):
+            return
+        if value == "leave":
+            if self.frame.verbs or self.frame.placed:
+                self._close()
+            self.frame.negated = True
+            self.frame.verbs.append("leave")
+            self.role = "moving"
+            return
+        if self.role == "spanned" or (token.text in SPANS and self.frame.axes and not self.frame.targets):
+            self.role = "axis"
+            return
+        if value == "meet" and self.frame.negated:
+            return
+        if value == "meet":
+            self.frame.verbs.append("meet")
+            self.role = "target" if self.frame.moving or self.purpose else "moving"
+            return
+        if self._begins_clause(token):
+            grasped = self.frame.moving if self.frame.verbs == ["grasp"] and not self.frame.placed else []
+            if grasped:
+                self.frame.verbs = []
+            else:
+                self._close()
+        self.shaping = value == "make"
+        if value == "halve":
+            self.frame.fractions.append("half")
+        if value == "quarter":
+            self.frame.fractions.append("quarter")
+        self.frame.verbs.append(value)
+        if value == "cover":
+            self.role = "target"
+            return
+        self.role = "target" if self.role == "target" and self.purpose else "moving"
+
+    def _begins_clause(self, token: Token) -> bool:
+        frame = self.frame
+        explains = token.form == "ing" and (
+            (not frame.specific and (frame.fractions or frame.goals or frame.axes))
+            or (self.comma and frame.specific and bool(frame.verbs))
+        )
+        if explains:
+            self.purpose = True
+        if self.purpose or not (frame.verbs or frame.moving or frame.placed or frame.fractions):
+            return False
+        if frame.negated and not frame.verbs:
+            return False
+        if not frame.verbs:
+            return frame.placed and self.joined and bool(frame.moving)
+        if frame.verbs == ["grasp"]:
+            return True
+        return self.joined or token.form != "ing" or not frame.moving
+
+    # Noun phrases ----------------------------------------------------------------------------------------------------
+
+    def _add_phrase(self, phrase: NounPhrase, after: int) -> None:
+        self.garments += phrase.garments
+        self.several |= bool(phrase.garments and not phrase.noun and (phrase.number or 1) > 1)
+        self.shaping = False
+        frame = self.frame
+        if phrase.quantity in ("each", "both", "all") and not (phrase.names_it or phrase.number) and frame.moving:
+            return
+        if self.spanning and self.joined:
+            frame.axes.append(phrase)
+            return
+        if self.role == "target":
+            if phrase.noun == "crease":
+                self.role = "axis"
+                frame.axes.append(phrase)
+                return
+            frame.targets.append(phrase)
+            self.role = "moving"
+        elif self.role == "axis":
+            frame.axes.append(phrase)
+            self.role = "axis" if phrase.noun == "crease" else "moving"
+        elif self.role == "excluded":
+            frame.excluded.append(phrase)
+        elif self.role == "leads":
+            frame.leads = phrase
+            self.role = "moving"
+        else:
+            self._add_moving(phrase, after)
+
+    def _add_moving(self, phrase: NounPhrase, after: int) -> None:
+        frame = self.frame
+        if phrase.noun in SEAMS or (phrase.noun == "crease" and (self.purpose or not frame.placed)):
+            frame.axes.append(phrase)
+            self.role = "axis" if phrase.noun == "crease" else "moving"
+            return
+        if phrase.noun in ("body", "centre", "midline") and frame.moving and not frame.targets:
+            frame.targets.append(phrase)
+            return
+        if phrase.quantity == "other" and phrase.text == "another" and not (phrase.noun or phrase.sides):
+            frame.again = True
+            return
+        subject_of_meet = after < len(self.tokens) and self.tokens[after].is_("verb", "meet")
+        if (
+            frame.axes
+            and phrase.names_part
+            and not self.joined
+            and (self._line_last or frame.axes[-1].noun == "crease")
+        ):
+            frame.axes.append(phrase)
+        elif (self.purpose and frame.specific) or (frame.negated and frame.moving and phrase.pronoun == "it"):
+            frame.restated.append(phrase)
+        elif self._opens_ellipsis(phrase) and not subject_of_meet:
+            self._close()
+            self.frame.elliptical = True
+            self.frame.moving.append(phrase)
+        else:
+            frame.moving.append(phrase)
+
+    def _opens_ellipsis(self, phrase: NounPhrase) -> bool:
+        """``fold the left edge to the middle and the right edge too``: a part after a clause that is complete."""
+        frame = self.frame
+        if not (self.joined and phrase.names_part and not self.purpose):
+            return False
+        if frame.negated or "grasp" in frame.verbs:
+            return True
+        return frame.specific and (frame.placed or bool(frame.fractions))
+
+    # Small words -----------------------------------------------------------------------------------------------------
+
+    def _on_prep(self, token: Token, at: int) -> None:
+        follows = starts_noun_phrase(self.tokens, at + 1)
+        value = token.value
+        if value == "over":
+            if follows and not (token.text == "over" and self._object_follows(at)):
+                self.role = "target"
+            else:
+                self.frame.directions.append("over")
+        elif value == "to" and (follows or described(self.tokens, at)):
+            self.role = "axis" if self.role == "axis" or self._inside_axis() else "target"
+        elif value in ("along", "down"):
+            if (follows or described(self.tokens, at)) and self.role != "target":
+                self.role = "axis"
+        elif value == "from":
+            self.frame.from_source = not self.frame.axes
+            if self._line_last or self.frame.verbs == ["crease"]:
+                self.role, self.spanning_from = "axis", True
+        elif value == "with" and "meet" in self.frame.verbs:
+            self.role = "target"
+        elif value == "with":
+            self.purpose = self.purpose or (follows and not self.frame.same)
+        elif value == "where":
+            self.role = "target" if follows else self.role
+            self.purpose = self.purpose or not follows
+        elif value == "between":
+            self.role, self.spanning = "axis", True
+        elif value == "into":
+            self._on_into(at)
+        elif value == "until":
+            self.purpose = True
+            self.role = "moving"
+        elif value == "under" or value == "beside":
+            self.frame.refused.append(token.text)
+        elif value == "in" and not (
+            follows and self.tokens[at + 1].category == "noun" and is_centre(self.tokens, at + 1)
+        ):
+            self.frame.directions.append("in")
+        elif value == "in":
+            self.role = "axis"
+
+    def _on_into(self, at: int) -> None:
+        """``into the middle`` is a place, ``into a triangle`` a shape."""
+        ahead = at + 1
+        while ahead < len(self.tokens) and self.tokens[ahead].category in ("side", "number"):
+            ahead += 1
+        if ahead < len(self.tokens) and self.tokens[ahead].is_("noun") and not self.tokens[ahead].is_("noun", *SHAPES):
+            self.role = "target"
+        else:
+            self.shaping = True
+
+    def _shape(self, at: int) -> bool:
+        """Whether the noun here is a shape to be made."""
+        return self.shaping and self.tokens[at].is_("noun", *SHAPES)
+
+    def _on_noun(self, token: Token, at: int) -> None:
+        self.frame.goals.append({"result": "strip"}.get(token.value, token.value))
+        self.shaping = False
+
+    def _lead(self, phrase: NounPhrase) -> None:
+        self.frame.leads = phrase
+
+    def _object_follows(self, at: int) -> bool:
+        """``fold over the left edge``: the object stands after the adverb, nothing has been named yet."""
+        return not self.frame.moving
+
+    def _inside_axis(self) -> bool:
+        return self.spanning_from or (
+            bool(self.frame.axes) and self.frame.axes[0].noun in ("crease", "diagonal", "armpit")
+        )
+
+    def _on_dir(self, token: Token, at: int) -> None:
+        self.frame.directions.append(token.value)
+        self.frame.phrasal |= token.text == "up"
+
+    def _on_ordinal(self, token: Token, at: int) -> None:
+        self.frame.unknown.append(token.text)
+
+    def _on_frac(self, token: Token, at: int) -> None:
+        if self.joined and (self.frame.fractions or (self.frame.specific and self.frame.placed)) and not self.purpose:
+            self._close()
+        self.frame.fractions.append(token.value)
+
+    def _on_manner(self, token: Token, at: int) -> None:
+        self.frame.manners.append(token.value)
+
+    def _on_goal(self, token: Token, at: int) -> None:
+        if token.value in ("square", "rectangle") and token.text == token.value and not self.shaping:
+            self.garments.append(token.value)
+            return
+        self.frame.goals.append(token.value)
+        self.shaping = self.shaping and token.value == "tidy"
+
+    def _on_skip(self, token: Token, at: int) -> None:
+        pass
+
+    def _on_again(self, token: Token, at: int) -> None:
+        if token.value == "same":
+            if self.frame.verbs or self.frame.moving:
+                self._close()
+            self.frame.same = True
+        elif token.value == "again":
+            if self.joined and self.frame.placed:
+                self._close()
+            self.frame.again = True
+        elif token.value == "too":
+            self.frame.too = True
+
+    def _on_times(self, token: Token, at: int) -> None:
+        self.frame.times = int(token.value)
+
+    def _on_steps(self, token: Token, at: int) -> None:
+        self.steps = int(token.value)
+
+    def _on_neg(self, token: Token, at: int) -> None:
+        if starts_noun_phrase(self.tokens, at + 1):
+            self.role = "excluded"
+            return
+        if not verb_ahead(self.tokens, at + 1):
+            self._on_denied(at)
+            return
+        if self.frame.verbs or (self.frame.moving and self.frame.placed):
+            self._close()
+        self.frame.negated = True
+
+    def _on_denied(self, at: int) -> None:
+        """``not from left to right but from bottom to top``: what is denied is dropped only if a *but* replaces it."""
+        rest = self.tokens[at + 1 :]
+        length = next((i for i, token in enumerate(rest) if token.category in ("but", "stop")), None)
+        if length is None or rest[length].category != "but":
+            self.frame.unknown.append(self.tokens[at].text + " " + " ".join(token.text for token in rest[:3]))
+            return
+        self.skip_to = at + 1 + length + 1
+
+    def _on_except(self, token: Token, at: int) -> None:
+        if at + 1 < len(self.tokens) and self.tokens[at + 1].is_("verb"):
+            self._close()
+            self.frame.negated = True
+        elif starts_noun_phrase(self.tokens, at + 1):
+            self.role = "excluded"
+        else:
+            self.frame.unknown.append(token.text)
+
+    def _on_only(self, token: Token, at: int) -> None:
+        self.frame.only = True
+
+    def _on_join(self, token: Token, at: int) -> None:
+        led = order_list(self.tokens, at + 1, self.frame.moving[-1] if self.frame.moving else None)
+        if token.value == "or":
+            self.frame.unknown.append("or")
+        elif led is not None:
+            self.frame.leads, self.skip_to = led
+        elif token.value == "colon" and self.frame.specific:
+            self._close()
+        elif token.value == "colon":
+            self.purpose = bool(self.frame.fractions or self.frame.goals or self.frame.axes)
+
+    def _on_but(self, token: Token, at: int) -> None:
+        if not self.frame.empty:
+            self._close()
+
+    def _on_loose(self, token: Token, at: int) -> None:
+        if token.text in ("wearer",):
+            self.frame.unknown.append("wearer")
+
+    def _on_measure(self, token: Token, at: int) -> None:
+        self.frame.unknown.append(token.text)
+
+    def _on_number(self, token: Token, at: int) -> None:
+        self.frame.unknown.append(token.text)
+
+    def _on_unknown(self, token: Token, at: int) -> None:
+        following = self.tokens[at + 1].category if at + 1 < len(self.tokens) else ""
+        if token.form == "adjective" and following in ("noun", "side", "garment", "goal"):
+            self.passed.append(token.text)
+        else:
+            self.frame.unknown.append(token.text)
+
+    def _on_quant(self, token: Token, at: int) -> None:
+        if token.text == "second":
+            self._close()

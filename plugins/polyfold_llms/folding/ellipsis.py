@@ -1,0 +1,106 @@
+"""Clauses that make sense only together: what one leaves out stands in its neighbour."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from polyfold_llms.folding.frames import Frame
+from polyfold_llms.folding.phrases import NounPhrase
+
+__all__ = ["completed"]
+
+
+def completed(frames: list[Frame]) -> list[Frame]:
+    """The clauses with what they leave out filled in from the one before or after."""
+    return _announced(_forward(_merged(frames)))
+
+
+def _merged(frames: list[Frame]) -> list[Frame]:
+    """Join *take the hem* and *fold it up*, *crease from here to there* and *fold that corner over*."""
+    merged: list[Frame] = []
+    for frame in frames:
+        previous = merged[-1] if merged else None
+        if previous is not None and _continues(previous, frame):
+            merged[-1] = _joined(previous, frame)
+        elif previous is not None and previous.verbs == ["crease"] and previous.axes and not previous.specific:
+            merged[-1] = replace(frame, axes=previous.axes + frame.axes)
+        else:
+            merged.append(frame)
+    return merged
+
+
+def _continues(previous: Frame, frame: Frame) -> bool:
+    if not frame.moving and any(p.noun == "leg" for p in previous.moving):
+        return False
+    pronoun = bool(frame.moving) and all(not p.names_part and not p.garments for p in frame.moving)
+    if previous.specific and not (previous.targets or previous.directions or previous.fractions or previous.goals):
+        return not frame.specific and (pronoun or not frame.moving) and frame.placed and not frame.fractions
+    return False
+
+
+def _joined(first: Frame, second: Frame) -> Frame:
+    return replace(
+        second,
+        moving=first.moving,
+        verbs=first.verbs + second.verbs,
+        leads=first.leads or second.leads,
+        excluded=first.excluded + second.excluded,
+        axes=first.axes + second.axes,
+        manners=first.manners + second.manners,
+    )
+
+
+def _forward(frames: list[Frame]) -> list[Frame]:
+    """*First the top edge, then the bottom edge, each to the middle*: the place stands in the last clause."""
+    filled = list(frames)
+    for index in range(len(frames) - 2, -1, -1):
+        frame, following = filled[index], filled[index + 1]
+        said = frame.placed or frame.fractions or frame.goals or frame.same or frame.verbs
+        if said or not frame.specific or not following.specific or not following.placed or following.verbs:
+            continue
+        nouns = {p.noun for p in following.moving}
+        if all(p.noun is None or p.noun in nouns for p in frame.moving):
+            noun = next(iter(nouns))
+            filled[index] = replace(
+                frame,
+                moving=[p if p.noun else replace(p, noun=noun) for p in frame.moving],
+                targets=following.targets,
+                manners=following.manners,
+                directions=[d for d in following.directions if d in ("in", "over")],
+                axes=[replace(p, sides=()) for p in following.axes],
+            )
+    return filled
+
+
+def _announced(frames: list[Frame]) -> list[Frame]:
+    """*Fold both sleeves in: the left straight, the right at a slant*: the first clause only announces the others."""
+    kept: list[Frame] = []
+    index = 0
+    while index < len(frames):
+        frame = frames[index]
+        details = []
+        while index + 1 + len(details) < len(frames) and _details(frame, frames[index + 1 + len(details)]):
+            details.append(frames[index + 1 + len(details)])
+        sides = {side for detail in details for p in detail.moving for group in p.sides for side in group}
+        if {"left", "right"} <= sides or {"top", "bottom"} <= sides:
+            noun = frame.moving[-1].noun
+            for detail in details:
+                moving = [replace(p, noun=noun, pronoun=None) for p in detail.moving]
+                kept.append(replace(detail, moving=moving, directions=detail.directions or frame.directions))
+            index += 1 + len(details)
+        else:
+            kept.append(frame)
+            index += 1
+    return kept
+
+
+def _details(header: Frame, frame: Frame) -> bool:
+    last = header.moving[-1] if header.moving else None
+    several = (
+        last is not None and last.noun and not last.sides and (last.plural or last.quantity in ("both", "all", "each"))
+    )
+    return bool(several) and bool(frame.moving) and all(_refers(last, p) for p in frame.moving) and not frame.targets
+
+
+def _refers(last: NounPhrase | None, phrase: NounPhrase) -> bool:
+    return last is not None and bool(phrase.sides) and phrase.noun in (None, last.noun)
