@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from polyfold.garments import Mesh
 from polyfold.types import Action, Camera
-from polyfold_xpbd.contact import vertex_normals
-from polyfold_xpbd.dynamics import DIVERGED, SETTLED, advance
+from polyfold_xpbd.compiled import DIVERGED, SETTLED, advance, vertex_normals
 from polyfold_xpbd.grasp import plan_motion, take_hold
 from polyfold_xpbd.model import build_model
 from polyfold_xpbd.tethers import TetherMap

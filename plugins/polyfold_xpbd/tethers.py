@@ -7,10 +7,15 @@ of one comparison per particle and arm.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.garments import Mesh
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 __all__ = ["TetherMap"]
 
@@ -59,7 +64,7 @@ class TetherMap:
             reach[known].astype(np.float32),
         )
 
-    def _graph(self, triangles: NDArray[np.int32]):  # noqa: ANN202
+    def _graph(self, triangles: NDArray[np.int32]) -> csr_array:
         """Edges and the diagonals across them, weighted by length."""
         from scipy.sparse import csr_array
 
