@@ -29,11 +29,18 @@ _PUBLIC = {
     "Scene": "polyfold.types",
     "Subgoal": "polyfold.types",
     "Template": "polyfold.polygon",
+    "Study": "polyfold.study",
+    "ablate": "polyfold.study",
+    "compare": "polyfold.results",
     "fold": "polyfold.folding",
     "garment": "polyfold.sources",
+    "grid": "polyfold.study",
     "ground": "polyfold.sources",
     "hookimpl": "polyfold.hookspecs",
+    "load": "polyfold.study",
     "register": "polyfold.plugins",
+    "run": "polyfold.results",
+    "table": "polyfold.results",
 }
 
 __all__ = [
@@ -49,15 +56,22 @@ __all__ = [
     "PolyfoldError",
     "RefusedError",
     "Scene",
+    "Study",
     "Subgoal",
     "Template",
     "__version__",
+    "ablate",
+    "compare",
     "fold",
     "garment",
+    "grid",
     "ground",
     "hookimpl",
+    "load",
     "plugins",
     "register",
+    "run",
+    "table",
 ]
 
 if TYPE_CHECKING:
@@ -70,7 +84,9 @@ if TYPE_CHECKING:
     from polyfold.hookspecs import hookimpl
     from polyfold.plugins import register
     from polyfold.polygon import FoldedModel, Template
+    from polyfold.results import compare, run, table
     from polyfold.sources import garment, ground
+    from polyfold.study import Study, ablate, grid, load
     from polyfold.types import Action, Camera, Decision, FoldLine, Observation, Scene, Subgoal
 
 

@@ -27,6 +27,7 @@ __all__ = [
     "Component",
     "Plugin",
     "Problem",
+    "by_hand",
     "catalog",
     "component_class",
     "create",
@@ -34,6 +35,7 @@ __all__ = [
     "names",
     "notify",
     "observe",
+    "portable",
     "refresh",
     "register",
     "unobserve",
@@ -160,6 +162,24 @@ def register(kind: str, name: str, target: type | str, summary: str = "", needs:
     _explicit[:] = [(k, c) for k, c in _explicit if (k, c.name) != (kind, name)]
     _explicit.append((kind, component))
     refresh()
+
+
+def by_hand() -> list[tuple[str, str]]:
+    """(kind, name) of what :func:`register` added in this process."""
+    return [(kind, component.name) for kind, component in _explicit]
+
+
+def portable() -> list[tuple[str, str, str]]:
+    """(kind, name, target) of what was registered by hand and another process can import by its target."""
+    found = []
+    for kind, component in _explicit:
+        target = component.target
+        if isinstance(target, type):
+            if target.__module__ == "__main__" or "<locals>" in target.__qualname__:
+                continue
+            target = f"{target.__module__}:{target.__qualname__}"
+        found.append((kind, component.name, target))
+    return found
 
 
 def names(kind: str) -> list[str]:

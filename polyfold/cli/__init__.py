@@ -16,6 +16,8 @@ VERBS = {
     "fold": ("polyfold.cli.fold", "fold a garment from a sentence, in simulation"),
     "ground": ("polyfold.cli.ground", "fit the polygon model to a photo, mask or outline"),
     "garments": ("polyfold.cli.garments", "draw a picture sheet of seeded garments"),
+    "evaluate": ("polyfold.cli.evaluate", "run a study: variants over tasks and garments"),
+    "table": ("polyfold.cli.table", "tabulate an evaluation"),
     "plugins": ("polyfold.cli.plugins", "list the installed plugins and their components"),
 }
 

@@ -1,0 +1,34 @@
+"""``polyfold evaluate``: run a study, resumable and in parallel."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+__all__ = ["configure", "run"]
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("config", type=Path, help="study, for example experiments/smoke.toml")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="run directory; resumed if it exists")
+    parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes on this machine (default: 1)")
+    parser.add_argument("--engine", choices=["local", "dask"], default="local", help="dask: a cluster")
+    parser.add_argument("--address", metavar="URL", help="of the Dask scheduler (default: start one here)")
+    parser.add_argument("--garments", type=int, metavar="N", help="garments per kind instead of the study's")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run what is missing and print the table."""
+    from polyfold import results, study
+
+    chosen = study.load(arguments.config)
+    if arguments.garments is not None:
+        chosen = study.Study(**{**chosen.model_dump(), "garments": arguments.garments})
+    try:
+        found = results.run(chosen, arguments.out, arguments.workers, arguments.engine, arguments.address)
+    except KeyboardInterrupt:
+        print(f"interrupted; what is finished is in {arguments.out}, run the same command to go on")
+        raise
+    print(results.table(found))
+    return 0

@@ -1,0 +1,28 @@
+"""``polyfold table``: the results of an evaluation as a table."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from polyfold.tables import FORMATS
+
+__all__ = ["configure", "run"]
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("out", type=Path, metavar="DIR", help="run directory of an evaluation")
+    parser.add_argument("--format", choices=FORMATS, default="markdown", help="default: markdown")
+    parser.add_argument("--by", choices=["kind", "type", "task", "none"], default="kind", help="default: kind")
+    parser.add_argument("--compare", nargs=2, metavar=("VARIANT", "BASELINE"), help="paired differences instead")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the table."""
+    from polyfold.results import compare, open_results, table
+
+    found = open_results(arguments.out)
+    made = compare(found, *arguments.compare) if arguments.compare else table(found, groups=arguments.by)
+    print(getattr(made, arguments.format)())
+    return 0

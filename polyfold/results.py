@@ -1,0 +1,146 @@
+"""What a study found: its records, and how they are selected, tabulated and compared."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from polyfold.errors import ConfigError
+from polyfold.statistics import Estimate, estimate, paired
+from polyfold.study import Study
+from polyfold.tables import Table, shown
+
+__all__ = ["Results", "compare", "open_results", "run", "table"]
+
+Record = Mapping[str, Any]
+
+KINDS = ("square", "rectangle", "tshirt", "pants")
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """The finished episodes of a study.
+
+    Attributes:
+        study: what was run.
+        records: one per episode, as :func:`polyfold.evaluation.evaluate_cell` makes them.
+    """
+
+    study: Study
+    records: Sequence[Record]
+
+    def of(self, variant: str, kind: str | None = None) -> list[Record]:
+        """Records of a variant, of one garment kind or of all."""
+        return [r for r in self.records if r["variant"] == variant and (kind is None or r["garment"] == kind)]
+
+    def kinds(self) -> list[str]:
+        """Garment kinds that occur, the paper's four first."""
+        found = {record["garment"] for record in self.records}
+        return [kind for kind in KINDS if kind in found] + sorted(found - set(KINDS))
+
+    def _repr_html_(self) -> str:
+        return table(self).html()
+
+
+def run(
+    study: Study,
+    out: str | Path,
+    workers: int = 1,
+    engine: str = "local",
+    address: str | None = None,
+    progress: bool = True,
+) -> Results:
+    """Run a study, or what its directory lacks of it; see :func:`polyfold.runner.evaluate`."""
+    from polyfold.runner import evaluate
+
+    return Results(study, evaluate(study, out, workers, engine, address, progress))
+
+
+def open_results(out: str | Path) -> Results:
+    """Read a run directory, finished or not. Raises ConfigError if there is none."""
+    description = Path(out) / "run.json"
+    if not description.exists():
+        raise ConfigError(f"{out} is no run directory (it has no run.json); give the --out of an evaluation")
+    config = json.loads(description.read_text("utf-8"))["config"]
+    if "study" not in config:
+        raise ConfigError(f"{out} holds no study; give the --out of an evaluation")
+    lines = (
+        (Path(out) / "episodes.jsonl").read_text("utf-8").split("\n") if (Path(out) / "episodes.jsonl").exists() else []
+    )
+    return Results(Study(**config["study"]), [json.loads(line) for line in lines[:-1]])
+
+
+SUCCESS: dict[str, Callable[[Record], float | None]] = {
+    "MPPE [mm]": lambda record: record["metrics"]["mppe"],
+    "mIoU": lambda record: record["metrics"]["miou"],
+    "moved part [mm]": lambda record: record["metrics"]["moved-part"],
+    "success %": lambda record: 100.0 * record["success"]["polyfold"],
+    "strict %": lambda record: 100.0 * record["success"]["strict"],
+}
+"""Columns of the tables: what is averaged."""
+
+
+def table(results: Results, columns: Sequence[str] = tuple(SUCCESS), groups: str = "kind") -> Table:
+    """Variants by garment kind (``kind``), task type (``type``), task (``task``) or over all (``none``).
+
+    Cells are means with 95 % bootstrap intervals; n is the number of episodes.
+    """
+    keys = {"kind": "garment", "type": "type", "task": "task", "none": None}
+    if groups not in keys:
+        raise ConfigError(f"can't group by {groups!r}; choose one of {', '.join(keys)}")
+    rows = []
+    for variant in results.study.variants:
+        for group, records in _grouped(results, variant, keys[groups]):
+            cells = [shown(estimate([SUCCESS[column](record) for record in records])) for column in columns]
+            rows.append([_marked(variant, records), group, str(len(records)), *cells])
+    note = f"{results.study.name}: mean [95 % bootstrap interval]; reference: the oracle from the same start."
+    if any(record["privileged"] for record in results.records):
+        note += " * privileged: sees more than the camera."
+    return Table(["variant", groups if groups != "none" else "", "n", *columns], rows, note)
+
+
+def _marked(variant: str, records: Sequence[Record]) -> str:
+    return f"{variant} *" if any(record["privileged"] for record in records) else variant
+
+
+def _grouped(results: Results, variant: str, key: str | None) -> list[tuple[str, list[Record]]]:
+    if key == "garment":
+        found = [(kind, results.of(variant, kind)) for kind in results.kinds()]
+        found.append(("all", results.of(variant)))
+    elif key is None:
+        found = [("all", results.of(variant))]
+    else:
+        names = dict.fromkeys(record[key] for record in results.records)
+        found = [(name, [r for r in results.of(variant) if r[key] == name]) for name in names]
+    return [(name, records) for name, records in found if records]
+
+
+def compare(results: Results, variant: str, baseline: str) -> Table:
+    """Paired differences between two variants on the same tasks, garments and wordings."""
+    for name in (variant, baseline):
+        if name not in results.study.variants:
+            raise ConfigError(f"there is no variant {name!r}; choose from {', '.join(results.study.variants)}")
+    ours, theirs = (_by_episode(results.of(name)) for name in (variant, baseline))
+    shared = [key for key in ours if key in theirs]
+    rows = []
+    for kind in [*results.kinds(), "all"]:
+        keys = [key for key in shared if kind in ("all", ours[key]["garment"])]
+        if keys:
+            found = [
+                _difference(column, [ours[key] for key in keys], [theirs[key] for key in keys]) for column in SUCCESS
+            ]
+            rows.append([kind, str(len(keys)), *(shown(value, signed=True) for value in found)])
+    note = f"{variant} − {baseline}, the same episodes; mean [95 % bootstrap interval]."
+    return Table(["kind", "n", *SUCCESS], rows, note)
+
+
+def _difference(column: str, ours: Sequence[Record], theirs: Sequence[Record]) -> Estimate:
+    value = SUCCESS[column]
+    return paired([value(record) for record in ours], [value(record) for record in theirs])
+
+
+def _by_episode(records: Sequence[Record]) -> dict[tuple[Any, ...], Record]:
+    return {(record["task"], record["garment_seed"], record["wording"]): record for record in records}

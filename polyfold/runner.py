@@ -1,0 +1,171 @@
+"""Runs a study: in this process, in several, or on a Dask cluster; resumable, with progress.
+
+A finished episode is on disk before the next is waited for, so killing a run at any moment loses at most what was in
+flight, and running it again does only what is missing.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+from polyfold import plugins
+from polyfold.errors import ConfigError
+from polyfold.evaluation import evaluate_cell
+from polyfold.store import RunDirectory
+from polyfold.study import Cell, Study, cells
+
+__all__ = ["ENGINES", "evaluate"]
+
+ENGINES = ("local", "dask")
+Record = dict[str, Any]
+
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
+
+
+def evaluate(
+    study: Study,
+    out: str | Path,
+    workers: int = 1,
+    engine: str = "local",
+    address: str | None = None,
+    progress: bool = True,
+) -> list[Record]:
+    """Run what a directory lacks of a study and return all its records, in the study's order.
+
+    Args:
+        study: what to run.
+        out: run directory; made if needed, resumed if it holds the same study.
+        workers: processes on this machine.
+        engine: ``local`` or ``dask``.
+        address: of the Dask scheduler; without one a cluster of ``workers`` is started on this machine.
+        progress: show a progress bar with rate, time left and running success.
+
+    Raises:
+        ConfigError: if the directory belongs to another study, or a component can't reach the workers.
+    """
+    if engine not in ENGINES:
+        raise ConfigError(f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}")
+    run = RunDirectory(out, {"study": study.model_dump(mode="json")})
+    wanted = list(cells(study))
+    done = run.episodes()
+    missing = [cell for cell in wanted if cell.key not in done]
+    if missing and (workers > 1 or engine == "dask"):
+        _check_portable()
+    with closing(_results(study, missing, workers, engine, address)) as results:
+        for cell, record in _with_progress(results, len(wanted), list(done.values()), progress and bool(missing)):
+            run.append(cell.key, record)
+    done = run.episodes()
+    return [done[cell.key] for cell in wanted]
+
+
+Results = Iterator[tuple[Cell, Record]]
+
+
+def _results(study: Study, missing: Sequence[Cell], workers: int, engine: str, address: str | None) -> Results:
+    if not missing:
+        return iter(())
+    if engine == "dask":
+        return _on_dask(study, missing, workers, address)
+    return _in_processes(study, missing, workers) if workers > 1 else _here(study, missing)
+
+
+def _here(study: Study, missing: Sequence[Cell]) -> Results:
+    for cell in missing:
+        yield cell, evaluate_cell(study, cell)
+
+
+def _in_processes(study: Study, missing: Sequence[Cell], workers: int) -> Results:
+    """The first episode runs here and fills the compiler's cache; then the workers start from it."""
+    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+    from multiprocessing import get_context
+
+    yield missing[0], evaluate_cell(study, missing[0])
+    waiting = iter(missing[1:])
+    with _one_thread_each():
+        pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare_worker, (plugins.portable(),))
+        try:
+            running = {pool.submit(evaluate_cell, study, cell): cell for cell in _first(waiting, 2 * workers)}
+            while running:
+                finished, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    cell = running.pop(future)
+                    yield cell, future.result()
+                    running |= {pool.submit(evaluate_cell, study, more): more for more in _first(waiting, 1)}
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _first(cells_left: Iterator[Cell], count: int) -> list[Cell]:
+    return [cell for _, cell in zip(range(count), cells_left, strict=False)]
+
+
+def _one_thread_each() -> Any:
+    """Libraries of the workers keep to one thread: the parallelism is in the episodes."""
+    from unittest.mock import patch
+
+    return patch.dict(os.environ, dict.fromkeys(_THREADS, "1"))
+
+
+def _prepare_worker(registrations: Sequence[tuple[str, str, str]]) -> None:
+    """Leave Ctrl-C to the parent, end with it, and know what was registered by hand."""
+    import multiprocessing
+    import signal
+    import threading
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def end_with_parent() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=end_with_parent, daemon=True).start()
+    for kind, name, target in registrations:
+        plugins.register(kind, name, target)
+
+
+def _on_dask(study: Study, missing: Sequence[Cell], workers: int, address: str | None) -> Results:
+    try:
+        from distributed import Client, LocalCluster, as_completed
+    except ModuleNotFoundError as error:
+        raise ConfigError("the engine 'dask' needs: pip install distributed") from error
+    with _one_thread_each():
+        cluster = None if address else LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
+        with Client(address or cluster) as client:
+            try:
+                for kind, name, target in plugins.portable():
+                    client.run(plugins.register, kind, name, target)
+                running = {client.submit(evaluate_cell, study, cell, pure=False): cell for cell in missing}
+                for future, record in as_completed(list(running), with_results=True):
+                    yield running.pop(future), record
+            finally:
+                if cluster is not None:
+                    cluster.close()
+
+
+def _with_progress(results: Results, total: int, done: Sequence[Record], shown: bool) -> Results:
+    from tqdm import tqdm
+
+    successes = sum(record["success"]["polyfold"] for record in done)
+    with tqdm(total=total, initial=len(done), unit="episode", disable=not shown) as bar:
+        for finished, (cell, record) in enumerate(results, len(done) + 1):
+            yield cell, record
+            successes += record["success"]["polyfold"]
+            bar.set_postfix_str(f"success {successes / finished:.0%}", refresh=False)
+            bar.update()
+
+
+def _check_portable() -> None:
+    """Refuse components that a worker could not import."""
+    portable = {(kind, name) for kind, name, _ in plugins.portable()}
+    for kind, name in plugins.by_hand():
+        if (kind, name) not in portable:
+            raise ConfigError(
+                f"{name!r} was registered from a notebook or script and can't reach worker processes; "
+                "put its class into a module that can be imported, or run with workers=1"
+            )

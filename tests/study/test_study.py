@@ -1,0 +1,124 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+import polyfold
+from polyfold.errors import ConfigError
+from polyfold.results import open_results
+from polyfold.runner import evaluate
+from polyfold.study import cells, experiment_of
+
+SMALL = {"name": "small", "tasks": ("square-corner-*",), "garments": 2, "first_seed": 2000, "edge_length": 0.03}
+TIMES = ("seconds", "peak_memory_mb")
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path_factory, monkeypatch):
+    monkeypatch.setenv("POLYFOLD_CACHE", str(tmp_path_factory.getbasetemp() / "cache"))
+
+
+def untimed(records):
+    return [{name: value for name, value in record.items() if name not in TIMES} for record in records]
+
+
+def test_cells_are_every_combination_once_with_seeds_of_their_own():
+    study = polyfold.ablate(polyfold.Study(**SMALL), "policy", ["caso", "farthest"])
+    found = list(cells(study))
+    assert len({cell.key for cell in found}) == len(found) == 4 * 2 * 2
+    assert [cell.seed for cell in found] == [cell.seed for cell in cells(study)]
+    assert {cell.wording for cell in found} == {0, 1}, "the wordings take turns"
+
+
+@pytest.mark.parametrize(
+    ("path", "says"),
+    [
+        ("polcy", "sets 'polcy'; did you mean 'policy'"),
+        ("policy.gama", "did you mean 'policy.gamma'"),
+        ("simulator.thicknes", "did you mean 'simulator.thickness'"),
+    ],
+)
+def test_a_mistyped_override_names_the_path_and_the_nearest_right_one(path, says):
+    with pytest.raises(ConfigError, match=says):
+        polyfold.ablate(polyfold.Study(**SMALL), path, [1])
+
+
+def test_grid_combines_settings():
+    study = polyfold.grid(polyfold.Study(**SMALL), {"policy": ["caso", "farthest"], "policy.gamma": [0.0, 0.04]})
+    assert len(study.variants) == 4
+    assert experiment_of(study, "farthest, 0.0").policy.params == {"gamma": 0.0}
+
+
+def test_study_files_say_what_is_wrong(tmp_path):
+    path = tmp_path / "study.toml"
+    for text, says in (("garmnts = 3", "did you mean 'garments'"), ("garments = 0", "garments"), ("x = [", "TOML")):
+        path.write_text(text)
+        with pytest.raises(ConfigError, match=says):
+            polyfold.load(path)
+    path.write_text('tasks = ["tshrt-*"]')
+    with pytest.raises(ConfigError, match="no task of 'polyfold70' matches"):
+        list(cells(polyfold.load(path)))
+
+
+def test_oracle_is_perfect_and_noop_never_succeeds(tmp_path):
+    study = polyfold.ablate(polyfold.Study(**SMALL), "agent", ["oracle", "noop"])
+    results = polyfold.run(study, tmp_path, progress=False)
+    assert all(record["metrics"] == {"miou": 1.0, "moved-part": 0.0, "mppe": 0.0} for record in results.of("oracle"))
+    assert not any(record["success"]["polyfold"] for record in results.of("noop"))
+    text = polyfold.table(results).markdown()
+    assert "| oracle * | square | 8 |" in text, "privileged agents are marked"
+    difference = polyfold.compare(results, "oracle", "noop")
+    assert dict(zip(difference.headers, difference.rows[-1], strict=True))["success %"].startswith("+100.0")
+
+
+def test_two_workers_give_the_same_as_one_and_the_table_prints_in_every_format(tmp_path):
+    study = polyfold.Study(**SMALL)
+    one = evaluate(study, tmp_path / "one", progress=False)
+    two = evaluate(study, tmp_path / "two", workers=2, progress=False)
+    assert untimed(one) == untimed(two)
+    table = polyfold.table(open_results(tmp_path / "two"))
+    assert table.csv().count("\n") == table.markdown().count("| polyfold |") == 2
+    assert "<td>square</td>" in table.html()
+    assert r"success \%" in table.latex()
+
+
+def test_killed_at_any_moment_it_goes_on_without_loss_or_repetition(tmp_path):
+    config = tmp_path / "study.toml"
+    config.write_text(
+        'name = "small"\ntasks = ["square-corner-*"]\ngarments = 3\nfirst_seed = 2000\nedge_length = 0.03\n'
+    )
+    command = [sys.executable, "-m", "polyfold", "evaluate", str(config), "--out", str(tmp_path / "run")]
+    episodes = tmp_path / "run" / "episodes.jsonl"
+    for more in (1, 3):
+        before = episodes.read_bytes().count(b"\n") if episodes.exists() else 0
+        child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and child.poll() is None:
+            if episodes.exists() and episodes.read_bytes().count(b"\n") >= before + more:
+                break
+            time.sleep(0.01)
+        os.kill(child.pid, signal.SIGKILL)
+        child.wait()
+    resumed = evaluate(polyfold.load(config), tmp_path / "run", progress=False)
+    keys = [json.loads(line)["key"] for line in episodes.read_text().splitlines()]
+    assert len(keys) == len(set(keys)) == 12
+    undisturbed = evaluate(polyfold.load(config), tmp_path / "other", progress=False)
+    assert untimed(resumed) == untimed(undisturbed)
+
+
+def test_a_component_of_a_notebook_is_refused_by_workers_with_the_reason(tmp_path):
+    class Local:
+        def act(self, fold_line, scene, rng):
+            raise NotImplementedError
+
+    polyfold.register("policies", "local", Local)
+    try:
+        with pytest.raises(ConfigError, match="can't reach worker processes"):
+            evaluate(polyfold.Study(**SMALL), tmp_path, workers=2, progress=False)
+    finally:
+        polyfold.plugins._explicit.clear()
+        polyfold.plugins.refresh()
