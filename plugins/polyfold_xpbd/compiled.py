@@ -14,6 +14,10 @@ from numba import njit
 
 __all__ = ["DIVERGED", "RUNNING", "SETTLED", "advance", "vertex_normals"]
 
+compiled = njit(cache=True, fastmath=True, error_model="numpy")
+careful = njit(cache=True, error_model="numpy")
+"""Without fast maths, which would assume that nothing is ever NaN."""
+
 RUNNING, SETTLED, DIVERGED = 0, 1, 2
 LOOK_EVERY = 5
 """Substeps between looks at who is near whom and which way the sheet faces."""
@@ -27,14 +31,14 @@ CLEAR = 0.5
 """How far off a sheet something must be to be on one side of it, in thicknesses."""
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _shift(vectors, i, scale, x, y, z):
     vectors[i, 0] += scale * x
     vectors[i, 1] += scale * y
     vectors[i, 2] += scale * z
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def vertex_normals(x, corners, use, normals):
     """Area-weighted mean normals of the particles into ``normals``, shape (N, 3).
 
@@ -59,7 +63,7 @@ def vertex_normals(x, corners, use, normals):
         normals[i, 2] *= inverse
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _side_of(normals, i, dx, dy, dz, d2, radius_2, clear):
     """On which side of particle i's disc the offset lies (+-1, 0 if that isn't clear), and whether it is over it."""
     nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
@@ -73,7 +77,7 @@ def _side_of(normals, i, dx, dy, dz, d2, radius_2, clear):
     return np.int8(0), over
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _sort_into_cells(cell_of, cells, wanted):
     """Members of every cell, in order: those of cell c are ``members[start[c]:start[c + 1]]``."""
     count = cell_of.shape[0]
@@ -92,7 +96,7 @@ def _sort_into_cells(cell_of, cells, wanted):
     return start, members
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _may_touch(x, normals, i, j, excluded_start, excluded, tall):
     """Whether the pair isn't excluded and is near enough along its common normal."""
     nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
@@ -109,7 +113,7 @@ def _may_touch(x, normals, i, j, excluded_start, excluded, tall):
     return touch
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _update_pairs(
     x, normals, moved, excluded_start, excluded, radius, thickness, pad, old_start, old_j, old_side, start, pj, side
 ):  # fmt: skip
@@ -180,7 +184,7 @@ def _update_pairs(
     return pairs
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _pair_normals(normals, start, pj, side, pair_normal):
     """Unit direction from the first particle of each pair to the side where the second belongs.
 
@@ -200,7 +204,7 @@ def _pair_normals(normals, start, pj, side, pair_normal):
             pair_normal[p, 0], pair_normal[p, 1], pair_normal[p, 2] = nx * scale, ny * scale, nz * scale
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _resolve_pairs(
     x, previous, mobility, supported, rests, start, pj, pair_normal,
     radius, thickness, friction, relaxation, cap, recovery,
@@ -257,7 +261,7 @@ def _resolve_pairs(
             _shift(previous, i, -share_i * silent, nx, ny, nz)
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _bend(x, v, hinges, weights, dt):
     for h in range(hinges.shape[0]):
         a, b, c, d = hinges[h, 0], hinges[h, 1], hinges[h, 2], hinges[h, 3]
@@ -271,7 +275,7 @@ def _bend(x, v, hinges, weights, dt):
         _shift(v, d, -wd, kx, ky, kz)
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _predict(x, v, previous, mobility, dt, damping, fastest):
     keep = np.float32(1.0) - damping * dt
     fall = np.float32(9.81) * dt
@@ -289,7 +293,7 @@ def _predict(x, v, previous, mobility, dt, damping, fastest):
         x[i, 2] += vz * step
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _stretch(x, mobility, edges, rest_lengths):
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
@@ -302,7 +306,7 @@ def _stretch(x, mobility, edges, rest_lengths):
         _shift(x, b, -sb, dx, dy, dz)
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _hold_back(x, mobility, particles, anchors, lengths):
     for t in range(particles.shape[0]):
         i, a = particles[t], anchors[t]
@@ -313,7 +317,7 @@ def _hold_back(x, mobility, particles, anchors, lengths):
             _shift(x, i, -s, dx, dy, dz)
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _table(x, previous, mobility, supported, rests, floor, friction):
     for i in range(x.shape[0]):
         push = floor - x[i, 2]
@@ -329,7 +333,7 @@ def _table(x, previous, mobility, supported, rests, floor, friction):
             x[i, 1] -= hold * ty
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _carry(x, grasped, offsets, arm, directions, path, angles, k):
     """Put the grasped particles where the grippers are: along the path, and turned about the crease's direction."""
     c, s = np.float32(np.cos(angles[k])), np.float32(np.sin(angles[k]))
@@ -345,12 +349,12 @@ def _carry(x, grasped, offsets, arm, directions, path, angles, k):
         x[i, 2] = path[k, a, 2] + risen
 
 
-@njit(cache=True)
+@careful
 def _is_finite(x):
     return np.isfinite(x.sum()) and np.abs(x).max() < 100.0
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _velocities(x, previous, v, inverse_dt):
     energy, fastest_2 = np.float32(0.0), np.float32(0.0)
     for i in range(x.shape[0]):
@@ -364,7 +368,7 @@ def _velocities(x, previous, v, inverse_dt):
     return energy, fastest_2
 
 
-@njit(cache=True, fastmath=True)
+@compiled
 def _mark_moved(x, listed, moved, limit, everything):
     """Mark the particles that left the place where they were last listed by more than ``limit``; whether there are."""
     any_moved = False
@@ -377,10 +381,10 @@ def _mark_moved(x, listed, moved, limit, everything):
     return any_moved
 
 
-@njit(cache=True)
+@careful
 def advance(
     x, v, previous, listed, mobility, normals, edges, rest_lengths, hinges, hinge_weights, corners, use,
-    excluded_start, excluded, start, pj, side, pair_normal, old_start, old_j, old_side, clock,
+    excluded_start, excluded, start, pj, side, pair_normal, old_start, old_j, old_side, clock, supported, rests,
     grasped, offsets, arm, directions, path, angles, tied, anchors, lengths, first, last, settings, damping, rest_speed,
 ):  # fmt: skip
     """Run substeps ``first`` to ``last`` in place; stop early once slow (``rest_speed`` > 0) for ten substeps.
@@ -398,7 +402,6 @@ def advance(
     floor, fastest = settings[8], settings[9]
     inverse_dt = np.float32(1.0) / dt
     moved = np.empty(x.shape[0], np.bool_)
-    supported, rests = np.zeros(x.shape[0], np.bool_), np.zeros(x.shape[0], np.bool_)
     for k in range(first, last):
         if clock[0] % BEND_EVERY == 0:
             _bend(x, v, hinges, hinge_weights, np.float32(BEND_EVERY) * dt)

@@ -73,6 +73,7 @@ class Solver:
         self._side, self._old_side = np.zeros((capacity, 2), np.int8), np.zeros((capacity, 2), np.int8)
         self._pair_normal = np.zeros((capacity, 3), np.float32)
         self._clock = np.zeros(3, np.int64)
+        self._supported, self._rests = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
@@ -148,7 +149,7 @@ class Solver:
         interval: float,
     ) -> bool:
         # A fresh list and clock make a stage depend on the saved state alone, so that restore() repeats exactly.
-        self._clock[:] = 0
+        self._clock[:], self._supported[:], self._rests[:] = 0, False, False
         chunk = substeps if on_frame is None else max(1, round(interval / self.dt))
         done = 0
         while done < substeps:
@@ -169,8 +170,8 @@ class Solver:
             self.x, self.v, self._previous, self._listed, self._mobility, self._normals, model.edges,
             model.rest_lengths, model.hinges, model.hinge_weights, model.normal_corners, model.normal_use,
             model.excluded_start, model.excluded, self._start, self._second, self._side, self._pair_normal,
-            self._old_start, self._old_second, self._old_side, self._clock, *held, first, last, self._settings,
-            np.float32(damping), np.float32(rest_speed),
+            self._old_start, self._old_second, self._old_side, self._clock, self._supported, self._rests, *held,
+            first, last, self._settings, np.float32(damping), np.float32(rest_speed),
         )  # fmt: skip
 
 
