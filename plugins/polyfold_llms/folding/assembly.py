@@ -265,6 +265,9 @@ class _Assembler:
         if phrase.noun in ("body", "centre", "midline") and frame.moving and not frame.targets:
             frame.targets.append(phrase)
             return
+        if phrase.noun in ("third", "quarter") and phrase.plural and not phrase.sides and not frame.specific:
+            frame.fractions.append(phrase.noun)
+            return
         if phrase.quantity == "other" and phrase.text == "another" and not (phrase.noun or phrase.sides):
             frame.again = True
             return

@@ -59,8 +59,9 @@ def _forward(frames: list[Frame]) -> list[Frame]:
         if said or not frame.specific or not following.specific or not following.placed or following.verbs:
             continue
         nouns = {p.noun for p in following.moving}
-        if all(p.noun is None or p.noun in nouns for p in frame.moving):
-            noun = next(iter(nouns))
+        noun = next(iter(nouns))
+        meant = frame.context.noun if frame.context is not None else noun
+        if all(p.noun in nouns or (p.noun is None and meant == noun) for p in frame.moving):
             filled[index] = replace(
                 frame,
                 moving=[p if p.noun else replace(p, noun=noun) for p in frame.moving],

@@ -31,7 +31,8 @@ def fold_edges(names: list[str], clause: Clause, garment: Garment) -> list[Fold]
             or frame.fractions
             or _is_legs(frame)
         ):
-            return [fold_in_half(garment, names[0])]
+            sided = any(phrase.sides for phrase in frame.moving) or _is_legs(frame)
+            return [fold_in_half(garment, names[0] if sided else None)]
         if (
             len(names) == 2
             and names[1] == OPPOSITE_EDGE.get(names[0])
@@ -177,6 +178,8 @@ def fold_sleeve(part: Part, clause: Clause, garment: Garment) -> Fold:
     other = OPPOSITE_EDGE[side]
     if any(target == Part("sleeve", other) for target in clause.targets):
         return fold_in_half(garment, side)
+    if clause.frame.fractions:
+        raise NotUnderstoodError("a sleeve can't be folded in half on its own; it can be folded in onto the body")
     if side in clause.frame.directions or "out" in clause.frame.directions:
         raise NotUnderstoodError(f"folding the {side} sleeve that way would move it off the shirt; fold it inward")
     if any(fold.action == "sleeve" and fold.part == side for fold in garment.folds):

@@ -73,7 +73,9 @@ def fold_in_fraction(garment: Garment, fraction: str, edge: str | None = None) -
     if fraction == "quarter" and garment.kind == "square" and not garment.folds:
         garment.note("A quarter of a square: a triangle, then the triangle in half.")
         return _repeat(garment, 2, first=Fold("corner", "bottom_left", "top_right"))
-    return _repeat(garment, {"half": 1, "quarter": 2, "eighth": 3}[fraction])
+    done = sum(fold.action == "half" for fold in garment.folds)
+    wanted = {"half": 1, "quarter": 2, "eighth": 3}[fraction]
+    return _repeat(garment, max(1, wanted - done) if wanted > 1 else 1)
 
 
 def _in_thirds(garment: Garment, edge: str | None) -> list[Fold]:

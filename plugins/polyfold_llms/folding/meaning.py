@@ -113,6 +113,8 @@ def _barred(request: Request, garment: Garment) -> set[tuple[str, str]]:
                 raise NotUnderstoodError("it says not to fold; nothing is left to do")
             phrases += frame.moving
         for phrase in phrases:
+            if phrase.quantity == "other":  # "leave the others": no clause asks for them
+                continue
             context = next((p for p in frame.moving if p.noun), frame.context)
             if phrase.noun is None and context is not None:
                 phrase = replace(phrase, noun=context.noun)

@@ -243,6 +243,9 @@ def _edges(phrase: NounPhrase, garment: Garment, role: str, noun: str | None) ->
 
 
 def _unsided_edges(phrase: NounPhrase, garment: Garment, role: str) -> list[Part]:
+    triangle = garment.folds[-1] if len(garment.folds) == 1 and garment.folds[0].action == "corner" else None
+    if triangle is not None and phrase.number == 2 and triangle.target == OPPOSITE_CORNER[triangle.part]:
+        return [Part("corner", corner) for corner in CORNERS if corner not in (triangle.part, triangle.target)]
     last = next((fold for fold in reversed(garment.folds) if fold.action in ("half", "middle", "band")), None)
     if phrase.quantity in ("other", "opposite"):
         if phrase.plural and last is not None and last.action == "middle":

@@ -69,7 +69,9 @@ def noun_phrase(tokens: Sequence[Token], at: int) -> tuple[NounPhrase, int]:
     while at < len(tokens):
         token = tokens[at]
         if token.category == "side":
-            if found.noun or found.pronoun or OPPOSITE[token.value] in group or token.value in group:
+            listed = found.noun == "corner" and not found.sides and (found.plural or len(group) == 1)
+            taken = OPPOSITE[token.value] in group or token.value in group
+            if (found.noun and not listed) or found.pronoun or taken:
                 break
             group.add(token.value)
         elif token.is_("quant", "opposite") and found.noun and not found.quantity:
@@ -103,7 +105,7 @@ def noun_phrase(tokens: Sequence[Token], at: int) -> tuple[NounPhrase, int]:
             found = replace(found, pronoun=token.value)
             at += 1
             break
-        elif token.category == "join" and group and not found.noun and _side_follows(tokens, at):
+        elif token.category == "join" and group and (_list_goes_on(found, tokens, at)):
             groups.append(frozenset(group))
             group = set()
             while tokens[at].category != "side":
@@ -124,6 +126,8 @@ def noun_phrase(tokens: Sequence[Token], at: int) -> tuple[NounPhrase, int]:
 def _counted(found: NounPhrase, token: Token) -> NounPhrase:
     if token.category == "number":
         return replace(found, number=int(token.value))
+    if token.text == "others":
+        return replace(found, quantity="other", plural=True)
     return replace(found, quantity=token.value if found.quantity in (None, "all", "both") else found.quantity)
 
 
@@ -131,6 +135,15 @@ def _named(found: NounPhrase, token: Token) -> NounPhrase:
     if found.noun:
         return replace(found, plural=found.plural or token.plural)
     return replace(found, noun=token.value, plural=token.plural)
+
+
+def _list_goes_on(found: NounPhrase, tokens: Sequence[Token], at: int) -> bool:
+    """``the left and right sleeves``, ``the corners bottom left and top left``."""
+    if tokens[at].value == "or":
+        return False
+    if not found.noun:
+        return _side_follows(tokens, at)
+    return found.noun == "corner" and found.plural and at + 1 < len(tokens) and tokens[at + 1].category == "side"
 
 
 def _side_follows(tokens: Sequence[Token], at: int) -> bool:

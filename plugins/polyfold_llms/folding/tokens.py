@@ -235,9 +235,9 @@ def _match(words: list[str], at: int) -> tuple[Token | None, int]:
     for name, category in (("stepcount", "steps"), ("timescount", "times")):
         if word.startswith(name):
             return Token(category, word.removeprefix(name), word), 1
-    if word == ":":
-        return Token("join", "colon", word), 1
-    if word in ".;!?()":
+    if word in ":()":
+        return Token("join", "colon" if word == ":" else "comma", word), 1
+    if word in ".;!?":
         return Token("stop", word, word), 1
     if word == ",":
         return Token("join", "comma", word), 1
