@@ -32,10 +32,10 @@ def versions() -> dict[str, str]:
     return found
 
 
-def write_atomically(path: Path, text: str) -> None:
+def write_atomically(path: Path, content: str | bytes) -> None:
     """Write a file so that a kill leaves either the old content or the new."""
     scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    scratch.write_text(text, "utf-8")
+    scratch.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
     scratch.replace(path)
 
 

@@ -1,0 +1,91 @@
+"""Small pictures of episodes, kept beside the records of a run: what was seen and done, fold by fold, then the end."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.geometry import contour_of
+
+if TYPE_CHECKING:
+    from polyfold.episode import Episode, Step
+
+__all__ = ["LIMIT", "PICTURES", "picture_path", "thumbnail"]
+
+PICTURES = ("none", "failed", "all")
+"""Which episodes get a picture; ``failed`` includes the first episode of each task, so that successes are seen too."""
+
+LIMIT = 40_000
+"""Most bytes of a picture."""
+
+PANEL, GAP = 264, 8
+PAPER = 255
+QUALITIES = (80, 65, 50, 30)
+
+
+def picture_path(key: str) -> str:
+    """Where an episode's picture lies in its run directory, as a relative path that every file system takes."""
+    readable = re.sub(r"[^A-Za-z0-9.-]+", "_", key).strip("._")[:80]
+    return f"pictures/{readable}-{hashlib.sha256(key.encode()).hexdigest()[:8]}.webp"
+
+
+def thumbnail(episode: Episode, wanted: NDArray[np.bool_] | None = None) -> bytes:
+    """The episode as a row of square panels, a WebP of at most ``LIMIT`` bytes.
+
+    Args:
+        episode: what happened; every fold is a panel, and the final picture the last one.
+        wanted: the silhouette that was wanted, bool, shape (H, W); its outline is drawn over the last panel.
+    """
+    from polyfold import view
+
+    panels = [_step_panel(step) for step in episode.steps]
+    panels.append(view.overlay(episode.final, outline=_outline(wanted)))
+    return _compressed(panels)
+
+
+def _step_panel(step: Step) -> NDArray[np.uint8]:
+    from polyfold import view
+
+    return view.overlay(step.observation, None, step.fold_line, step.action)
+
+
+def _outline(wanted: NDArray[np.bool_] | None) -> NDArray[np.float64] | None:
+    return None if wanted is None or not wanted.any() else contour_of(wanted)
+
+
+def _compressed(panels: list[NDArray[np.uint8]]) -> bytes:
+    """The panels side by side, as sharp as the limit allows."""
+    data = b""
+    for size in (PANEL, PANEL // 2):
+        strip = _row(panels, size)
+        for quality in QUALITIES:
+            data = _webp(strip, quality)
+            if len(data) <= LIMIT:
+                return data
+    return data
+
+
+def _row(panels: list[NDArray[np.uint8]], size: int) -> NDArray[np.uint8]:
+    from PIL import Image
+
+    gap = GAP * size // PANEL
+    row = np.full((size, len(panels) * (size + gap) - gap, 3), PAPER, np.uint8)
+    for index, panel in enumerate(panels):
+        # Drawn at the camera's size and then made smaller: strokes stay fine, and what covers what stays the same.
+        small = Image.fromarray(panel).resize((size, size), Image.Resampling.LANCZOS)
+        row[:, index * (size + gap) : index * (size + gap) + size] = small
+    return row
+
+
+def _webp(rgb: NDArray[np.uint8], quality: int) -> bytes:
+    from io import BytesIO
+
+    from PIL import Image
+
+    buffer = BytesIO()
+    Image.fromarray(rgb).save(buffer, format="WEBP", quality=quality, method=4)
+    return buffer.getvalue()
