@@ -32,7 +32,8 @@ def silhouette(polygons: Sequence[ArrayLike]) -> Floats:
     import shapely
 
     shapes = [shapely.Polygon(p) for p in polygons]
-    shapes = [shape if shape.is_valid else shape.buffer(0) for shape in shapes]
+    # A piece may touch itself where a fold line met a corner.
+    shapes = [shape if shape.is_valid else shapely.make_valid(shape) for shape in shapes]
     # Snapping to a fine grid keeps nearly coincident edges of stacked layers from confusing the overlay.
     united = shapely.union_all(shapes, grid_size=1e-3)
     parts = [part for part in getattr(united, "geoms", [united]) if isinstance(part, shapely.Polygon)]

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold.geometry import polygon_area
+
 __all__ = ["Outline", "cut"]
 
 _COINCIDE = 1e-7
@@ -43,7 +45,7 @@ def cut(
     Args:
         outline: a simple polygon; it need not be convex and may fall into several pieces.
         distance: signed distance of its corners from the line, positive on the left, shape (N,).
-        direction: direction of the line, shape (2,).
+        direction: unit vector along the line, shape (2,).
         label: the label of the new edges along the line.
 
     Returns:
@@ -53,7 +55,7 @@ def cut(
     crossings = _crossings(outline, distance, left, direction)
     if not crossings:
         return ([outline], []) if left.all() else ([], [outline])
-    partner = _partners(crossings)
+    partner = _partners(crossings, clockwise=polygon_area(outline.points) > 0)
     pieces: tuple[list[Outline], list[Outline]] = ([], [])
     for begin_left in (True, False):
         # On its way round, a piece follows the polygon from one crossing to the next, then the line to the partner.
@@ -72,7 +74,9 @@ def cut(
     return pieces
 
 
-def _crossings(outline: Outline, distance, left, direction) -> list[_Crossing]:
+def _crossings(
+    outline: Outline, distance: NDArray[np.float64], left: NDArray[np.bool_], direction: NDArray[np.float64]
+) -> list[_Crossing]:
     found, count = [], len(distance)
     for i in range(count):
         j = (i + 1) % count
@@ -87,36 +91,25 @@ def _crossings(outline: Outline, distance, left, direction) -> list[_Crossing]:
     return found
 
 
-def _partners(crossings: list[_Crossing]) -> list[int]:
+def _partners(crossings: list[_Crossing], clockwise: bool) -> list[int]:
     """Pair the crossings that bound a stretch of the line inside the polygon.
 
-    Along the line, leaving and entering alternate; where crossings coincide (the line touches a corner) that decides
-    their order.
+    Along the line, passing to the left and to the right alternate, and the polygon's orientation says which is first;
+    that decides the order where crossings coincide (the line touches a corner).
     """
     order = sorted(range(len(crossings)), key=lambda k: crossings[k].along)
-    expected = crossings[order[0]].leaves_left
-    if sum(c.along - crossings[order[0]].along < _COINCIDE for c in crossings) > 1:
-        expected = _outermost_kind(crossings, order)
+    leaves_left = not clockwise
     arranged: list[int] = []
     while order:
         near = [k for k in order if crossings[k].along - crossings[order[0]].along < _COINCIDE]
-        chosen = next((k for k in near if crossings[k].leaves_left == expected), order[0])
+        chosen = next((k for k in near if crossings[k].leaves_left == leaves_left), order[0])
         arranged.append(chosen)
         order.remove(chosen)
-        expected = not expected
+        leaves_left = not leaves_left
     partner = [0] * len(crossings)
     for a, b in zip(arranged[::2], arranged[1::2], strict=True):
         partner[a], partner[b] = b, a
     return partner
-
-
-def _outermost_kind(crossings: list[_Crossing], order: list[int]) -> bool:
-    """Kind of the first crossing when several coincide there: the one that is in excess up to the next gap."""
-    group = [k for k in order if crossings[k].along - crossings[order[0]].along < _COINCIDE]
-    leaving = sum(crossings[k].leaves_left for k in group)
-    if 2 * leaving != len(group):
-        return 2 * leaving > len(group)
-    return crossings[order[-1]].leaves_left is False
 
 
 class _Builder:

@@ -85,9 +85,10 @@ def fold_facets(facets: Sequence[Facet], start: Floats, end: Floats, number: int
 def _cut_all(facets: Sequence[Facet], start: Floats, end: Floats) -> tuple[list[Facet], list[Facet]]:
     lifted: list[Facet] = []
     remaining: list[Facet] = []
+    direction = (end - start) / np.hypot(*(end - start))
     for facet in facets:
         distance = signed_distance(facet.polygon, start, end)
-        left, right = cut(Outline(facet.polygon, facet.names, facet.edges), distance, (end - start), CREASE)
+        left, right = cut(Outline(facet.polygon, facet.names, facet.edges), distance, direction, CREASE)
         for side, pieces in ((lifted, left), (remaining, right)):
             found = (replace(facet, polygon=p.points, names=p.names, edges=p.edges) for p in pieces)
             side.extend(piece for piece in found if piece.area >= LEAST_AREA)

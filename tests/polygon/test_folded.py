@@ -180,6 +180,17 @@ def test_a_line_along_an_inner_corner_and_nearly_along_an_edge():
         square().fold(FoldLine((100.05, 300), (100.05, 100)))
 
 
+@pytest.mark.parametrize("line", [FoldLine((350, 150), (50, 150)), FoldLine((50, 150), (350, 150))])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_line_that_touches_an_inner_corner_cuts_cleanly(line, mirrored):
+    rest = LEGS * (-1, 1) + (400, 0) if mirrored else LEGS
+    model = FoldedModel(rest, LEG_NAMES, {}).fold(line)
+    pieces = [shapely.make_valid(shapely.Polygon(facet.polygon)) for facet in model.facets()]
+    assert sum(piece.area for piece in pieces) == pytest.approx(abs(polygon_area(LEGS)))
+    assert area(model) == pytest.approx(abs(polygon_area(LEGS)))
+    assert shapely.Polygon(model.outline()).area > 15_000
+
+
 def test_a_dropped_sliver_leaves_its_vertices_a_position():
     # The line takes a corner off the right leg and a fraction of a pixel off the left one.
     line = FoldLine((290, 330), (175, 350.2))
