@@ -1,14 +1,18 @@
-"""The ``polyfold`` agent: segmenter, grounding, planner and policy in a row (paper, Fig. 4)."""
+"""The ``polyfold`` agent: segmenter, grounding, planner and policy in a row (paper, Fig. 4), with recovery."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import PlanError
+from polyfold.geometry import contour_of
 from polyfold.interfaces import Goal, Grounding, Planner, Policy, Segmenter
 from polyfold.types import Action, Decision, FoldLine, Observation, Scene, Subgoal
 
@@ -16,12 +20,31 @@ __all__ = ["PolyFoldAgent"]
 
 
 class PolyFoldAgent:
-    """Splits the instruction, then per subgoal: ground the picture, plan a fold line, choose picks and places."""
+    """Splits the instruction, then per subgoal: ground the picture, plan a fold line, choose picks and places.
+
+    After each fold the next picture tells whether it took effect: the whole flap should have left its side of the line.
+    What is still there is folded again along the same line, a bounded number of times (the paper's method has no
+    recovery). A garment that was displaced is found again by the grounding.
+    """
 
     requires: ClassVar[frozenset[str]] = frozenset({"instruction"})
     uses: ClassVar[tuple[str, ...]] = ("segmenter", "grounding", "planner", "policy")
 
-    def __init__(self, segmenter: Segmenter, grounding: Grounding, planner: Planner, policy: Policy) -> None:
+    class Config(BaseModel):
+        """Parameters of the recovery."""
+
+        model_config = ConfigDict(frozen=True, extra="forbid")
+
+        recover: bool = Field(True, description="look whether a fold took effect and repeat it if not")
+        retries: int = Field(3, ge=0, le=10, description="times that one fold is repeated at most")
+        remaining: float = Field(
+            0.35, gt=0, lt=1, description="share of the flap's depth that, still left of the line, means a failed fold"
+        )
+
+    def __init__(
+        self, config: Config, segmenter: Segmenter, grounding: Grounding, planner: Planner, policy: Policy
+    ) -> None:
+        self._config = config
         self._segmenter = segmenter
         self._grounding = grounding
         self._planner = planner
@@ -33,35 +56,71 @@ class PolyFoldAgent:
             raise PlanError("the polyfold agent needs an instruction and a language model; give it both")
         self._goal = goal
         self._rng = np.random.default_rng(goal.seed)
-        self._scene: Scene | None = None
-        self._fold_line: FoldLine | None = None
+        self._last: Decision | None = None
+        self._tries = 0
         self._pending = list(self._planner.subgoals(goal.instruction, goal.template, goal.conversation))
         return tuple(self._pending)
 
     def decide(self, observation: Observation) -> Decision | None:
-        """Ground what is seen and plan the next subgoal; None after the last."""
+        """Repeat the last fold if it failed, else ground and plan the next subgoal; None after the last."""
+        if not self._pending and not self._can_repeat():
+            return None
+        clock = time.perf_counter()
+        mask = self._segmenter.segment(observation)
+        decision = self._repeated(mask, clock) or self._planned(observation, mask, clock)
+        self._tries = self._tries + 1 if decision is not None and decision.retry else 0
+        self._last = decision or self._last
+        return decision
+
+    def _planned(self, observation: Observation, mask: NDArray[np.bool_], clock: float) -> Decision | None:
+        """The next subgoal on what is seen now."""
         if not self._pending:
             return None
         assert self._goal.conversation is not None
-        clock = time.perf_counter()
-        mask = self._segmenter.segment(observation)
-        scene = self._grounding.ground(observation, mask, self._goal.template, self._scene, self._fold_line)
+        before = self._last
+        scene = self._grounding.ground(
+            observation,
+            mask,
+            self._goal.template,
+            None if before is None else before.scene,
+            None if before is None else before.fold_line,
+        )
         grounded = time.perf_counter()
         subgoal = self._pending[0]
         plan = self._planner.plan(subgoal, scene, self._goal.conversation)
         planned = time.perf_counter()
-        action, fold_line = self._act(plan, scene)
-        seconds = {
-            "grounding": grounded - clock,
-            "language": planned - grounded,
-            "policy": time.perf_counter() - planned,
-        }
+        action, line = self._act(plan, scene)
         self._pending.pop(0)
-        self._scene, self._fold_line = scene, fold_line
-        return Decision(action, subgoal, fold_line, scene, seconds)
+        seconds = {"grounding": grounded - clock, "language": planned - grounded, "policy": _since(planned)}
+        return Decision(action, subgoal, line, scene, seconds)
+
+    def _can_repeat(self) -> bool:
+        return self._config.recover and self._last is not None and self._tries < self._config.retries
+
+    def _repeated(self, mask: NDArray[np.bool_], clock: float) -> Decision | None:
+        """The last fold again, on what is still left of its line; None if it took effect."""
+        if not self._can_repeat():
+            return None
+        last = self._last
+        assert last is not None
+        assert last.scene is not None
+        assert last.fold_line is not None
+        contour = contour_of(mask)
+        still_there = float(last.fold_line.distance(contour).max())
+        if still_there <= self._config.remaining * float(last.fold_line.distance(last.scene.contour).max()):
+            return None
+        # The model of the scene stays the one before the fold: that is what the next grounding starts from.
+        looked = time.perf_counter()
+        action = self._policy.act(last.fold_line, replace(last.scene, mask=mask, contour=contour), self._rng)
+        seconds = {"grounding": looked - clock, "language": 0.0, "policy": _since(looked)}
+        return replace(last, action=action, seconds=seconds, retry=True)
 
     def _act(self, plan: FoldLine | Action, scene: Scene) -> tuple[Action, FoldLine]:
         if isinstance(plan, FoldLine):
             return self._policy.act(plan, scene, self._rng), plan
         # A direct planner gives picks and places; the line that explains them is what the next grounding needs.
         return plan, FoldLine.moving(plan.picks.mean(axis=0), plan.places.mean(axis=0))
+
+
+def _since(clock: float) -> float:
+    return time.perf_counter() - clock

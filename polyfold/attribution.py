@@ -12,7 +12,7 @@ import numpy as np
 
 from polyfold.episode import Episode, Step
 from polyfold.references import Reference
-from polyfold.types import FoldLine
+from polyfold.types import FoldLine, SimState
 
 __all__ = ["CAUSES", "attribute"]
 
@@ -36,11 +36,12 @@ def attribute(episode: Episode, lines: Sequence[FoldLine], reference: Reference)
         return _of_failure(episode.failure.stage)
     pixels = np.array(list(episode.initial_state.keypoint_pixels().values()))
     span = float(np.ptp(pixels, axis=0).max())
-    for step, line in zip(episode.steps, lines, strict=False):
-        cause = _of_step(step, line, lines, span, episode, reference)
+    settled = episode.settled()
+    for number, (step, line) in enumerate(zip(settled, lines, strict=False)):
+        cause = _of_step(number, step, line, lines, span, episode, reference)
         if cause is not None:
             return cause
-    return "subgoal" if len(episode.steps) != len(lines) else "execution"
+    return "subgoal" if len(settled) != len(lines) else "execution"
 
 
 def _of_failure(stage: str) -> str:
@@ -48,17 +49,24 @@ def _of_failure(stage: str) -> str:
 
 
 def _of_step(
-    step: Step, line: FoldLine, lines: Sequence[FoldLine], span: float, episode: Episode, reference: Reference
+    number: int,
+    step: Step,
+    line: FoldLine,
+    lines: Sequence[FoldLine],
+    span: float,
+    episode: Episode,
+    reference: Reference,
 ) -> str | None:
     """The cause if the fault lies in this step."""
     if step.fold_line is None:
         return None
     if not _agree(step.fold_line, line, span):
-        if _vertices_off(step, episode) > OFF * span:
+        before = episode.initial_state if number == 0 else episode.settled()[number - 1].after
+        if _vertices_off(step, before) > OFF * span:
             return "grounding"
         meant_another = any(_agree(step.fold_line, other, span) for other in lines if other is not line)
         return "subgoal" if meant_another or len(episode.subgoals) != len(lines) else "fold line"
-    landed = _landing_error(step, reference)
+    landed = _landing_error(number, step, reference)
     if landed is None or landed * episode.start.camera.pixels_per_metre <= OFF * span:
         return None
     return "policy" if _picks_off(step, span) else "execution"
@@ -70,22 +78,21 @@ def _agree(planned: FoldLine, wanted: FoldLine, span: float) -> bool:
     return bool(a @ b >= np.cos(np.radians(TURNED)) and abs(float(planned.distance(middle))) <= OFF * span)
 
 
-def _vertices_off(step: Step, episode: Episode) -> float:
+def _vertices_off(step: Step, before: SimState) -> float:
     """Mean distance [px] between fitted vertices and true keypoints before the step; 0 without a model."""
     if step.scene is None or step.scene.model is None:
         return 0.0
-    before = episode.initial_state if step.index == 0 else episode.steps[step.index - 1].after
     truth = before.keypoint_pixels()
     vertices = step.scene.model.vertices()
     distances = [np.hypot(*(vertices[name].point - truth[name])) for name in truth if name in vertices]
     return float(np.mean(distances)) if distances else 0.0
 
 
-def _landing_error(step: Step, reference: Reference) -> float | None:
+def _landing_error(number: int, step: Step, reference: Reference) -> float | None:
     """Mean particle distance [m] from the oracle's state after the same step."""
-    if step.index >= len(reference.after):
+    if number >= len(reference.after):
         return None
-    return float(np.linalg.norm(step.after.positions - reference.after[step.index].positions, axis=1).mean())
+    return float(np.linalg.norm(step.after.positions - reference.after[number].positions, axis=1).mean())
 
 
 def _picks_off(step: Step, span: float) -> bool:

@@ -52,6 +52,7 @@ class Step:
         observation: the picture it was decided on.
         seconds: time per stage (``grounding``, ``language``, ``policy``, ``execution``) [s].
         after: the true state once the cloth has settled, for metrics.
+        retry: whether it repeats the fold before, which was seen to have failed.
     """
 
     index: int
@@ -62,6 +63,7 @@ class Step:
     observation: Observation
     seconds: dict[str, float]
     after: SimState
+    retry: bool = False
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,11 @@ class Episode:
     task: str | None = None
     fidelity: Fidelity | None = None
     ideal_lines: tuple[FoldLine, ...] = ()
+
+    def settled(self) -> list[Step]:
+        """One step per planned fold: the last try of each."""
+        repeated = [step.retry for step in self.steps[1:]] + [False]
+        return [step for step, again in zip(self.steps, repeated, strict=False) if not again]
 
     def summary(self) -> dict[str, Any]:
         """The episode as plain data, as ``episode.json`` and ``polyfold fold --json`` have it."""
@@ -278,6 +285,7 @@ def _execute(simulator: Simulator, decision: Decision, seen: Observation, index:
         seen,
         seconds,
         simulator.state(),
+        decision.retry,
     )
     return step, after
 

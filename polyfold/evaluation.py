@@ -18,9 +18,12 @@ from polyfold.judging import suite
 from polyfold.references import Reference, reference_for
 from polyfold.scoring import PRESETS, Outcome, succeeded
 from polyfold.study import Cell, Study, experiment_of
-from polyfold.tasks import fold_lines
+from polyfold.tasks import Task, fold_lines
+from polyfold.thumbnails import thumbnail
 
-__all__ = ["evaluate_cell"]
+__all__ = ["evaluate_cell", "evaluate_with_picture"]
+
+Record = dict[str, Any]
 
 
 @lru_cache(maxsize=8)
@@ -28,18 +31,44 @@ def _garment(kind: str, seed: int, edge_length: float) -> Garment:
     return plugins.create("garments", kind).generate(seed, edge_length)
 
 
-def evaluate_cell(study: Study, cell: Cell) -> dict[str, Any]:
+def evaluate_cell(study: Study, cell: Cell) -> Record:
     """Run one episode and score it; plain data.
 
     The pose depends on the garment's seed alone, so that all variants and wordings start from the same picture as the
     oracle.
     """
     task = suite(study.suite).task(cell.task)
+    return _record(cell, task, *_run(study, cell, task))
+
+
+def evaluate_with_picture(study: Study, cell: Cell, pictures: str) -> tuple[Record, bytes | None]:
+    """As :func:`evaluate_cell`, with the episode's small picture (WebP) if ``pictures`` asks for one.
+
+    The picture travels back with the record, so that workers need not share a file system.
+
+    Args:
+        study, cell: what to run.
+        pictures: one of :data:`polyfold.thumbnails.PICTURES`.
+    """
+    task = suite(study.suite).task(cell.task)
+    episode, reference = _run(study, cell, task)
+    record = _record(cell, task, episode, reference)
+    first = cell.garment_seed == study.first_seed and cell.wording == 0
+    if pictures == "all" or (pictures == "failed" and (first or not record["success"]["polyfold"])):
+        return record, thumbnail(episode, reference.outcome.mask)
+    return record, None
+
+
+def _run(study: Study, cell: Cell, task: Task) -> tuple[Episode, Reference]:
     garment = _garment(cell.garment, cell.garment_seed, study.edge_length)
     experiment = experiment_of(study, cell.variant)
     reference = reference_for(task, garment, cell.garment_seed, experiment.simulator)
     instruction = task.instructions[cell.wording] if task.instructions else ""
     episode = run_episode(experiment, garment, instruction, cell.garment_seed, task=task, agent_seed=cell.seed)
+    return episode, reference
+
+
+def _record(cell: Cell, task: Task, episode: Episode, reference: Reference) -> Record:
     values = _scores(episode, reference)
     lines = fold_lines(task, episode.initial_state.keypoint_pixels())
     success = {preset: episode.failure is None and succeeded(values, preset) for preset in PRESETS}
@@ -51,9 +80,10 @@ def evaluate_cell(study: Study, cell: Cell) -> dict[str, Any]:
         "garment": cell.garment,
         "garment_seed": cell.garment_seed,
         "wording": cell.wording,
-        "instruction": instruction,
+        "instruction": episode.instruction,
         "subgoals": [subgoal.text for subgoal in episode.subgoals],
-        "steps": len(episode.steps),
+        "steps": len(episode.settled()),
+        "retries": sum(step.retry for step in episode.steps),
         "metrics": {name: _number(value) for name, value in values.items()},
         "step_errors_mm": _step_errors(episode, reference),
         "success": success,
@@ -76,7 +106,7 @@ def _scores(episode: Episode, reference: Reference) -> Mapping[str, float]:
 def _step_errors(episode: Episode, reference: Reference) -> list[float | None]:
     """Mean particle error [mm] after each of the episode's own steps, where the oracle has such a step."""
     errors = []
-    for step, wanted in zip(episode.steps, reference.after, strict=False):
+    for step, wanted in zip(episode.settled(), reference.after, strict=False):
         distance = np.linalg.norm(step.after.positions - wanted.positions, axis=1)
         errors.append(_number(1000.0 * float(distance.mean())))
     return errors

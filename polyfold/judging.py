@@ -43,7 +43,7 @@ def judge(episode: Episode, task_id: str | None = None) -> Episode:
     the planned lines, and the fidelity is labelled ``self-referenced``.
     """
     keypoints = episode.initial_state.keypoint_pixels()
-    planned = [step.fold_line for step in episode.steps if step.fold_line is not None]
+    planned = [step.fold_line for step in episode.settled() if step.fold_line is not None]
     if task_id is None and not episode.steps:
         return episode
     if task_id is None:

@@ -48,6 +48,7 @@ def _frame(step: Step):
     from polyfold import view
 
     title = step.subgoal.text if step.subgoal else f"fold {step.index + 1}"
+    title = f"again: {title}" if step.retry else title
     caption = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
     return view.Frame(step.observation.rgb, step.scene, step.fold_line, step.action, title, caption)
 

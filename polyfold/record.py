@@ -51,6 +51,7 @@ def _step(step: Step) -> dict[str, Any]:
         "places": _pixels(step.action.places),
         "seconds": _seconds(step.seconds),
         "notes": list(step.scene.notes) if step.scene else [],
+        "retry": step.retry,
     }
 
 

@@ -52,11 +52,12 @@ def run(
     engine: str = "local",
     address: str | None = None,
     progress: bool = True,
+    pictures: str = "failed",
 ) -> Results:
     """Run a study, or what its directory lacks of it; see :func:`polyfold.runner.evaluate`."""
     from polyfold.runner import evaluate
 
-    return Results(study, evaluate(study, out, workers, engine, address, progress))
+    return Results(study, evaluate(study, out, workers, engine, address, progress, pictures))
 
 
 def open_results(out: str | Path) -> Results:

@@ -7,16 +7,18 @@ flight, and running it again does only what is missing.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from polyfold import plugins
 from polyfold.errors import ConfigError
-from polyfold.evaluation import evaluate_cell
-from polyfold.store import RunDirectory
+from polyfold.evaluation import evaluate_with_picture
+from polyfold.store import RunDirectory, write_atomically
 from polyfold.study import Cell, Study, cells
+from polyfold.thumbnails import PICTURES, picture_path
 
 __all__ = ["ENGINES", "evaluate"]
 
@@ -33,6 +35,7 @@ def evaluate(
     engine: str = "local",
     address: str | None = None,
     progress: bool = True,
+    pictures: str = "failed",
 ) -> list[Record]:
     """Run what a directory lacks of a study and return all its records, in the study's order.
 
@@ -43,58 +46,76 @@ def evaluate(
         engine: ``local`` or ``dask``.
         address: of the Dask scheduler; without one a cluster of ``workers`` is started on this machine.
         progress: show a progress bar with rate, time left and running success.
+        pictures: which episodes get a small picture beside their record: ``none``, ``failed`` (and the first episode
+            of each task) or ``all``.
 
     Raises:
         ConfigError: if the directory belongs to another study, or a component can't reach the workers.
     """
     if engine not in ENGINES:
         raise ConfigError(f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}")
+    if pictures not in PICTURES:
+        raise ConfigError(f"there are no pictures {pictures!r}; choose one of {', '.join(PICTURES)}")
     run = RunDirectory(out, {"study": study.model_dump(mode="json")})
     wanted = list(cells(study))
     done = run.episodes()
     missing = [cell for cell in wanted if cell.key not in done]
     if missing and (workers > 1 or engine == "dask"):
         _check_portable()
-    with closing(_results(study, missing, workers, engine, address)) as results:
-        for cell, record in _with_progress(results, len(wanted), list(done.values()), progress and bool(missing)):
-            run.append(cell.key, record)
+    job = partial(evaluate_with_picture, study, pictures=pictures)
+    with closing(_results(job, missing, workers, engine, address)) as results:
+        shown = _with_progress(results, len(wanted), list(done.values()), progress and bool(missing))
+        for cell, (record, picture) in shown:
+            run.append(cell.key, _with_picture(run.path, cell, record, picture))
     done = run.episodes()
     return [done[cell.key] for cell in wanted]
 
 
-Results = Iterator[tuple[Cell, Record]]
+def _with_picture(folder: Path, cell: Cell, record: Record, picture: bytes | None) -> Record:
+    """The record with the relative path of its picture, which is on disk before the record is."""
+    if picture is None:
+        return record
+    path = picture_path(cell.key)
+    (folder / path).parent.mkdir(exist_ok=True)
+    write_atomically(folder / path, picture)
+    return {**record, "picture": path}
 
 
-def _results(study: Study, missing: Sequence[Cell], workers: int, engine: str, address: str | None) -> Results:
+Outcome = tuple[Record, bytes | None]
+Job = Callable[[Cell], Outcome]
+Results = Iterator[tuple[Cell, Outcome]]
+
+
+def _results(job: Job, missing: Sequence[Cell], workers: int, engine: str, address: str | None) -> Results:
     if not missing:
         return iter(())
     if engine == "dask":
-        return _on_dask(study, missing, workers, address)
-    return _in_processes(study, missing, workers) if workers > 1 else _here(study, missing)
+        return _on_dask(job, missing, workers, address)
+    return _in_processes(job, missing, workers) if workers > 1 else _here(job, missing)
 
 
-def _here(study: Study, missing: Sequence[Cell]) -> Results:
+def _here(job: Job, missing: Sequence[Cell]) -> Results:
     for cell in missing:
-        yield cell, evaluate_cell(study, cell)
+        yield cell, job(cell)
 
 
-def _in_processes(study: Study, missing: Sequence[Cell], workers: int) -> Results:
+def _in_processes(job: Job, missing: Sequence[Cell], workers: int) -> Results:
     """The first episode runs here and fills the compiler's cache; then the workers start from it."""
     from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
     from multiprocessing import get_context
 
-    yield missing[0], evaluate_cell(study, missing[0])
+    yield missing[0], job(missing[0])
     waiting = iter(missing[1:])
     with _one_thread_each():
         pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare_worker, (plugins.portable(),))
         try:
-            running = {pool.submit(evaluate_cell, study, cell): cell for cell in _first(waiting, 2 * workers)}
+            running = {pool.submit(job, cell): cell for cell in _first(waiting, 2 * workers)}
             while running:
                 finished, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in finished:
                     cell = running.pop(future)
                     yield cell, future.result()
-                    running |= {pool.submit(evaluate_cell, study, more): more for more in _first(waiting, 1)}
+                    running |= {pool.submit(job, more): more for more in _first(waiting, 1)}
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 
@@ -129,7 +150,7 @@ def _prepare_worker(registrations: Sequence[tuple[str, str, str]]) -> None:
         plugins.register(kind, name, target)
 
 
-def _on_dask(study: Study, missing: Sequence[Cell], workers: int, address: str | None) -> Results:
+def _on_dask(job: Job, missing: Sequence[Cell], workers: int, address: str | None) -> Results:
     try:
         from distributed import Client, LocalCluster, as_completed
     except ModuleNotFoundError as error:
@@ -140,7 +161,7 @@ def _on_dask(study: Study, missing: Sequence[Cell], workers: int, address: str |
             try:
                 for kind, name, target in plugins.portable():
                     client.run(plugins.register, kind, name, target)
-                running = {client.submit(evaluate_cell, study, cell, pure=False): cell for cell in missing}
+                running = {client.submit(job, cell, pure=False): cell for cell in missing}
                 for future, record in as_completed(list(running), with_results=True):
                     yield running.pop(future), record
             finally:
@@ -153,8 +174,8 @@ def _with_progress(results: Results, total: int, done: Sequence[Record], shown: 
 
     successes = sum(record["success"]["polyfold"] for record in done)
     with tqdm(total=total, initial=len(done), unit="episode", disable=not shown) as bar:
-        for finished, (cell, record) in enumerate(results, len(done) + 1):
-            yield cell, record
+        for finished, (cell, (record, picture)) in enumerate(results, len(done) + 1):
+            yield cell, (record, picture)
             successes += record["success"]["polyfold"]
             bar.set_postfix_str(f"success {successes / finished:.0%}", refresh=False)
             bar.update()

@@ -7,7 +7,7 @@ x right, y away from the viewer, z up from the table. :class:`Camera` is the onl
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -234,6 +234,7 @@ class Decision:
         fold_line: the fold line behind the action, if there is one.
         scene: the scene it decided on, if it made one.
         seconds: time spent per stage (``grounding``, ``language``, ``policy``) [s].
+        retry: whether this repeats a fold that was seen to have failed.
     """
 
     action: Action
@@ -241,7 +242,4 @@ class Decision:
     fold_line: FoldLine | None = None
     scene: Scene | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
-
-    def with_seconds(self, **seconds: float) -> Decision:
-        """A copy with further stage times."""
-        return replace(self, seconds={**self.seconds, **seconds})
+    retry: bool = False

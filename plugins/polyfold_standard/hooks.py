@@ -13,6 +13,12 @@ def register_garments(register):
 
 
 @hookimpl
+def register_simulators(register):
+    """Register the fault injector."""
+    register("faulty", "polyfold_standard.faults:FaultySimulator", "another simulator with missed grasps and slips")
+
+
+@hookimpl
 def register_segmenters(register):
     """Register the segmenter."""
     register("colour", "polyfold_standard.segmenter:ColourThreshold", "colour distance from the table")

@@ -1,0 +1,84 @@
+"""The ``faulty`` simulator: another simulator with faults injected, so that recovery has something to do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from polyfold.garments import Garment
+from polyfold.plugins import create
+from polyfold.types import Action, Observation, SimState
+
+__all__ = ["FaultySimulator"]
+
+
+class FaultySimulator:
+    """Runs another simulator; grasps miss, cloth slips from the grippers, the garment is displaced between folds."""
+
+    class Config(BaseModel):
+        """Parameters: probabilities per grasp or per fold."""
+
+        model_config = ConfigDict(frozen=True, extra="forbid")
+
+        inner: str = Field("xpbd", description="the simulator that faults are injected into")
+        miss: float = Field(0.0, ge=0, le=1, description="probability that a grasp takes no cloth, per arm")
+        slip: float = Field(0.0, ge=0, le=1, description="probability that the cloth is dropped on the way, per fold")
+        displace: float = Field(0.0, ge=0, le=1, description="probability that the garment is moved after a fold")
+        shift_m: float = Field(0.03, ge=0, description="largest displacement [m]")
+        turn_deg: float = Field(10.0, ge=0, description="largest turn of a displaced garment [deg]")
+
+    def __init__(self, config: Config) -> None:
+        self._config = config
+        self._inner: Any = create("simulators", config.inner)
+
+    def reset(self, garment: Garment, seed: int) -> Observation:
+        """Lay the garment flat; the faults of the episode follow from the seed."""
+        self._rng = np.random.default_rng([seed, 7])
+        return self._inner.reset(garment, seed)
+
+    def observe(self) -> Observation:
+        """Take a picture."""
+        return self._inner.observe()
+
+    def execute(self, action: Action) -> Observation:
+        """Do the fold with whatever goes wrong."""
+        action.check_inside(self.observe().camera)
+        holds = self._rng.random(action.arms) >= self._config.miss
+        slips, displaced = self._rng.random(2) < (self._config.slip, self._config.displace)
+        share = self._rng.uniform(0.3, 0.8) if slips else 1.0
+        if holds.any():
+            picks, places = action.picks[holds], action.places[holds]
+            self._inner.execute(Action(picks, picks + share * (places - picks)))
+        if displaced:
+            self._displace()
+        return self.observe()
+
+    def _displace(self) -> None:
+        state = self._inner.state()
+        angle = np.radians(self._rng.uniform(-1, 1) * self._config.turn_deg)
+        shift = self._rng.uniform(-1, 1, 2) * self._config.shift_m
+        centre = state.positions[:, :2].mean(axis=0)
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        positions = state.positions.copy()
+        positions[:, :2] = (positions[:, :2] - centre) @ turn + centre + shift
+        self._inner.restore(replace(state, positions=positions))
+
+    def record(self, recorder: Any, frames_per_second: float = 15.0) -> None:
+        """Pass on pictures of the motion, if the inner simulator can."""
+        if hasattr(self._inner, "record"):
+            self._inner.record(recorder, frames_per_second)
+
+    def state(self) -> SimState:
+        """Privileged state."""
+        return self._inner.state()
+
+    def restore(self, state: SimState) -> None:
+        """Return to a state of this garment."""
+        self._inner.restore(state)
+
+    def close(self) -> None:
+        """Release what is held."""
+        self._inner.close()
