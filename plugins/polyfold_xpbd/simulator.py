@@ -37,7 +37,7 @@ class XpbdSimulator:
         thickness: float = Field(0.0035, gt=0.001, le=0.02, description="distance of touching layers [m]")
         bending_length: float = Field(0.013, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]")
         table_friction: float = Field(0.8, ge=0.0, le=2.0, description="Coulomb friction, cloth on table")
-        cloth_friction: float = Field(0.5, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
+        cloth_friction: float = Field(0.6, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
 
     def __init__(self, config: Config | None = None) -> None:
         self.config = config or self.Config()
