@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from polyfold_llms.folding.frames import Frame, Request, in_order
 from polyfold_llms.folding.lookahead import (
+    LAYING,
     LINES,
     SEAMS,
     SHAPES,
@@ -44,6 +46,9 @@ class _Assembler:
         self.shaping = False
         self.joined = False
         self.comma = False
+        self.laying = False
+        self.grasped = False
+        self.target_last = False
         self._named_last = False
         self._line_last = False
         self.sentence_start = 0
@@ -64,14 +69,18 @@ class _Assembler:
                 self._lead(NounPhrase(sides=(frozenset({token.value}),)))
                 at += 3
                 continue
-            if token.text in ("crease", "quarter") and self.frame.empty and starts_noun_phrase(self.tokens, at + 1):
+            follows = starts_noun_phrase(self.tokens, at + 1)
+            from_here = at + 1 < len(self.tokens) and self.tokens[at + 1].is_("prep", "from", "until", "along")
+            if token.text in ("crease", "quarter") and self.frame.empty and (follows or from_here):
                 self.frame.verbs.append("crease" if token.text == "crease" else "fold")
                 self.frame.fractions += ["quarter"] if token.text == "quarter" else []
                 at += 1
                 continue
             if starts_noun_phrase(self.tokens, at) and not self._ordinal(at) and not self._shape(at):
                 phrase, at = noun_phrase(self.tokens, at)
+                was_target = self.role == "target"
                 self._add_phrase(phrase, at)
+                self.target_last = was_target
                 self._line_last = bool(self.frame.axes) and self.frame.axes[-1] is phrase and phrase.noun in LINES
                 self.joined = False
                 self._named_last = True
@@ -157,7 +166,7 @@ class _Assembler:
                 self._close()
                 return True
             return token.text == "second" and (
-                following is None or following.category not in ("noun", "side", "pronoun")
+                following is None or following.category not in ("noun", "side", "pronoun", "garment")
             )
         return False
 
@@ -165,6 +174,10 @@ class _Assembler:
 
     def _on_verb(self, token: Token, at: int) -> None:
         value = token.value
+        if token.form == "ing" and self.frame.leads is not None and self._named_last and not self.frame.specific:
+            first, self.frame.leads = self.frame.leads, None
+            self._close()
+            self.frame.moving.append(first)
         if self.shaping and value == "tidy":
             self.frame.goals.append("tidy")
             return
@@ -194,10 +207,11 @@ class _Assembler:
         if self._begins_clause(token):
             grasped = self.frame.moving if self.frame.verbs == ["grasp"] and not self.frame.placed else []
             if grasped:
-                self.frame.verbs = []
+                self.frame.verbs, self.grasped = [], True
             else:
                 self._close()
         self.shaping = value == "make"
+        self.laying = token.text.startswith(LAYING)
         if value == "halve":
             self.frame.fractions.append("half")
         if value == "quarter":
@@ -216,6 +230,9 @@ class _Assembler:
         )
         if explains:
             self.purpose = True
+        complete = frame.specific and frame.placed and token.form == "base" and token.value in ("fold", "move")
+        if self.purpose and self.joined and not self.comma and complete:
+            return True
         if self.purpose or not (frame.verbs or frame.moving or frame.placed or frame.fractions):
             return False
         if frame.negated and not frame.verbs:
@@ -231,9 +248,16 @@ class _Assembler:
     def _add_phrase(self, phrase: NounPhrase, after: int) -> None:
         self.garments += phrase.garments
         self.several |= bool(phrase.garments and not phrase.noun and (phrase.number or 1) > 1)
+        self.several |= bool(phrase.garments and phrase.quantity == "other")
         self.shaping = False
         frame = self.frame
-        if phrase.quantity in ("each", "both", "all") and not (phrase.names_it or phrase.number) and frame.moving:
+        only_counts = phrase.quantity in ("each", "both", "all") and not (phrase.names_it or phrase.number)
+        if only_counts and frame.moving:
+            return
+        if only_counts:
+            phrase = replace(phrase, quantity=None, pronoun="them")
+        if self.target_last and self.joined and len(frame.moving) > 1 and phrase.names_part:
+            frame.targets.append(phrase)
             return
         if self.spanning and self.joined:
             frame.axes.append(phrase)
@@ -258,9 +282,16 @@ class _Assembler:
 
     def _add_moving(self, phrase: NounPhrase, after: int) -> None:
         frame = self.frame
-        if phrase.noun in SEAMS or (phrase.noun == "crease" and (self.purpose or not frame.placed)):
+        if phrase.noun in SEAMS or phrase.noun == "crease":
             frame.axes.append(phrase)
             self.role = "axis" if phrase.noun == "crease" else "moving"
+            return
+        if self._restates(phrase):
+            frame.restated.append(phrase)
+            self.purpose = True
+            return
+        if self.grasped and phrase.names_part and phrase.noun not in ("body", "centre", "midline", *LINES):
+            frame.moving, self.grasped = [phrase], False
             return
         if phrase.noun in ("body", "centre", "midline") and frame.moving and not frame.targets:
             frame.targets.append(phrase)
@@ -282,11 +313,20 @@ class _Assembler:
         elif (self.purpose and frame.specific) or (frame.negated and frame.moving and phrase.pronoun == "it"):
             frame.restated.append(phrase)
         elif self._opens_ellipsis(phrase) and not subject_of_meet:
+            aside = self.comma
             self._close()
-            self.frame.elliptical = True
+            self.frame.elliptical, self.frame.aside = True, aside
             self.frame.moving.append(phrase)
         else:
             frame.moving.append(phrase)
+
+    def _restates(self, phrase: NounPhrase) -> bool:
+        """``..., its tip toward the hem``: a detail of the part that moves already."""
+        nouns = {p.noun for p in self.frame.moving}
+        bare = not (phrase.sides or phrase.quantity or phrase.number)
+        tip = "sleeve" in nouns and phrase.noun in ("cuff", "tip", "edge") and not phrase.sides
+        tip |= phrase.noun == "tip" and bare and self.frame.specific
+        return tip or (self.purpose and bare and bool(self.frame.axes) and phrase.noun == "sleeve")
 
     def _opens_ellipsis(self, phrase: NounPhrase) -> bool:
         """``fold the left edge to the middle and the right edge too``: a part after a clause that is complete."""
@@ -311,7 +351,7 @@ class _Assembler:
             self.role = "axis" if self.role == "axis" or self._inside_axis() else "target"
         elif value in ("along", "down"):
             if (follows or described(self.tokens, at)) and self.role != "target":
-                self.role = "axis"
+                self.role = "target" if self.laying and token.text in ("along", "at") else "axis"
         elif value == "from":
             self.frame.from_source = not self.frame.axes
             if self._line_last or self.frame.verbs == ["crease"]:
@@ -450,9 +490,12 @@ class _Assembler:
             self.frame.unknown.append("or")
         elif led is not None:
             self.frame.leads, self.skip_to = led
-        elif token.value == "colon" and self.frame.specific:
+        elif token.value == "colon" and self.frame.specific and (self.frame.verbs or self.frame.placed):
             self._close()
         elif token.value == "colon":
+            split = set(self.frame.fractions) & {"third", "quarter"}
+            if split:
+                self._close()
             self.purpose = bool(self.frame.fractions or self.frame.goals or self.frame.axes)
 
     def _on_but(self, token: Token, at: int) -> None:

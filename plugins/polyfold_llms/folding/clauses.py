@@ -24,13 +24,16 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
         raise NotUnderstoodError(f"{frame.times} times is more often than cloth can be folded")
     if frame.goals and frame.times > 1:
         frame, steps = replace(frame, times=1), frame.times
-    frame = _inherited(frame, previous)
+    frame = _paired(_begun(_inherited(frame, previous)))
     context = next((p for p in frame.moving if p.noun and p.noun not in WHOLES), None) or frame.context
     moving = [part for phrase in _distinct(frame.moving) for part in parts_of(phrase, garment, "moving", context)]
     excluded = {part for phrase in frame.excluded for part in parts_of(phrase, garment, "moving", context)}
     moving = [part for part in moving if part not in excluded]
     targets = [part for phrase in frame.targets for part in parts_of(phrase, garment, "target", context)]
     axes = [part for phrase in frame.axes for part in parts_of(phrase, _open(garment), "axis", frame.context)]
+    if moving and moving[0].what == "corner" and not targets:
+        corners = [part for part in axes if part.what == "corner"]
+        targets += corners if len(corners) == 1 else []
     if moving and moving[0].what == "corner":
         targets += [part for part in axes if part.what == "centre"]
     clause = Clause(frame, tuple(targets), tuple(axes))
@@ -57,14 +60,34 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
     return folds
 
 
+def _begun(frame: Frame) -> Frame:
+    """``begin with the left sleeve: fold it in``: what is begun with is what moves."""
+    pronouns = all(not p.names_part and not p.garments for p in frame.moving)
+    whole = frame.fractions or frame.goals or "cornertocorner" in frame.manners
+    if frame.leads is not None and pronouns and frame.placed and not whole:
+        return replace(frame, moving=[frame.leads], leads=None)
+    return frame
+
+
+def _paired(frame: Frame) -> Frame:
+    """``one sleeve lies on the other``: both are named, neither moves in particular."""
+    other = bool(frame.targets) and frame.targets[0].quantity == "other" and not frame.targets[0].sides
+    single = [p for p in frame.moving if p.number == 1 and p.noun in ("sleeve", "leg", "edge") and not p.sides]
+    if not (other and single):
+        return frame
+    both = replace(single[0], number=None, quantity="both", plural=True)
+    return replace(frame, moving=[both], targets=[], manners=[*frame.manners, "together"])
+
+
 def _distinct(phrases: list[NounPhrase]) -> list[NounPhrase]:
     """Without a second, barer mention: *starting at the bottom left, fold that corner*."""
     sided = [phrase for phrase in phrases if phrase.sides]
-    return [
-        phrase
-        for phrase in phrases
-        if phrase.sides or phrase.plural or phrase.quantity or phrase.number or not (phrase.noun and sided)
-    ]
+    return [phrase for phrase in phrases if not (sided and _repeats(phrase))]
+
+
+def _repeats(phrase: NounPhrase) -> bool:
+    counted = phrase.sides or phrase.quantity or phrase.number or (phrase.plural and phrase.noun != "corner")
+    return bool(phrase.noun) and not counted
 
 
 def _open(garment: Garment) -> Garment:
@@ -94,6 +117,8 @@ def _inherited(frame: Frame, previous: Frame | None) -> Frame:
         return replace(frame, moving=previous.moving)
     if frame.too and not (frame.manners or frame.axes):
         frame = replace(frame, manners=list(previous.manners), axes=_sideless(previous.axes))
+    if frame.too and not (frame.targets or frame.directions):
+        frame = replace(frame, targets=list(previous.targets))
     bare = frame.specific and not (frame.placed or frame.fractions or frame.goals)
     if bare and (frame.elliptical or not frame.verbs):
         targets = [p for p in previous.targets if p.noun in MIDDLE or p.noun == "body" or p.quantity == "opposite"]
@@ -116,6 +141,8 @@ def _led(moving: list[Part], first: list[Part]) -> list[Part]:
 def _fold_parts(moving: list[Part], clause: Clause, garment: Garment) -> list[Fold]:
     kinds = {part.what for part in moving}
     names = [part.which for part in moving]
+    if kinds == {"sleeve", "edge"} and len(set(names)) == 1:
+        return _fold_parts([part for part in moving if part.what == "edge"], clause, garment)
     fraction = next((f for f in clause.frame.fractions if f != "half"), None)
     if fraction and kinds == {"edge"} and len(names) == 1:
         return fold_in_fraction(garment, fraction, names[0])

@@ -22,7 +22,11 @@ def _merged(frames: list[Frame]) -> list[Frame]:
         previous = merged[-1] if merged else None
         if previous is not None and _continues(previous, frame):
             merged[-1] = _joined(previous, frame)
-        elif previous is not None and previous.verbs == ["crease"] and previous.axes and not previous.specific:
+        elif previous is not None and previous.specific and frame.verbs[:1] == ["crease"] and not frame.specific:
+            merged[-1] = replace(previous, axes=previous.axes + frame.axes, targets=previous.targets + frame.targets)
+        elif (previous is not None and _goes_over(previous, frame)) or (
+            previous is not None and previous.verbs == ["crease"] and previous.axes and not previous.specific
+        ):
             merged[-1] = replace(frame, axes=previous.axes + frame.axes)
         else:
             merged.append(frame)
@@ -36,6 +40,12 @@ def _continues(previous: Frame, frame: Frame) -> bool:
     if previous.specific and not (previous.targets or previous.directions or previous.fractions or previous.goals):
         return not frame.specific and (pronoun or not frame.moving) and frame.placed and not frame.fractions
     return False
+
+
+def _goes_over(previous: Frame, frame: Frame) -> bool:
+    """*Fold along that diagonal; the lower right half goes on top.*"""
+    only_line = bool(previous.axes) and not (previous.specific or previous.fractions or previous.goals)
+    return only_line and frame.specific and not frame.targets and frame.directions == ["over"]
 
 
 def _joined(first: Frame, second: Frame) -> Frame:
@@ -56,11 +66,14 @@ def _forward(frames: list[Frame]) -> list[Frame]:
     for index in range(len(frames) - 2, -1, -1):
         frame, following = filled[index], filled[index + 1]
         said = frame.placed or frame.fractions or frame.goals or frame.same or frame.verbs
-        if said or not frame.specific or not following.specific or not following.placed or following.verbs:
+        bare = all(p.noun is None and p.pronoun is None for p in frame.moving)
+        if said or not frame.specific or not following.specific or not following.placed:
+            continue
+        if following.verbs and not bare:
             continue
         nouns = {p.noun for p in following.moving}
         noun = next(iter(nouns))
-        meant = frame.context.noun if frame.context is not None else noun
+        meant = frame.context.noun if frame.context is not None and not bare else noun
         if all(p.noun in nouns or (p.noun is None and meant == noun) for p in frame.moving):
             filled[index] = replace(
                 frame,
@@ -82,6 +95,9 @@ def _announced(frames: list[Frame]) -> list[Frame]:
         details = []
         while index + 1 + len(details) < len(frames) and _details(frame, frames[index + 1 + len(details)]):
             details.append(frames[index + 1 + len(details)])
+        if _spelled_out(frame, frames[index + 1 : index + 3]):
+            index += 1
+            continue
         sides = {side for detail in details for p in detail.moving for group in p.sides for side in group}
         if {"left", "right"} <= sides or {"top", "bottom"} <= sides:
             noun = frame.moving[-1].noun
@@ -93,6 +109,14 @@ def _announced(frames: list[Frame]) -> list[Frame]:
             kept.append(frame)
             index += 1
     return kept
+
+
+def _spelled_out(frame: Frame, following: list[Frame]) -> bool:
+    """*In thirds: the lower third up, the upper third down*: two folds that make up the fraction before them."""
+    share = set(frame.fractions) & {"third", "quarter"}
+    return (
+        bool(share) and not frame.specific and len(following) == 2 and all(f.specific and f.placed for f in following)
+    )
 
 
 def _details(header: Frame, frame: Frame) -> bool:

@@ -58,6 +58,13 @@ def _definite(edge: str, garment: Garment) -> str:
 def fold_edge(part: Part, clause: Clause, garment: Garment) -> Fold:
     """One edge: onto the opposite edge or to the middle line."""
     edge = part.which
+    opposite = any(target == Part("edge", OPPOSITE_EDGE.get(edge, "")) for target in clause.targets)
+    if not opposite and not clause.targets:
+        opposite = edge in OPPOSITE_EDGE and Part("edge", OPPOSITE_EDGE[edge]) in clause.axes
+        if opposite:
+            return fold_in_half(garment, edge)
+    if opposite:
+        return fold_in_half(garment, edge)
     if clause.toward(*MIDDLE) or clause.has("halfway", "meetmiddle"):
         return Fold("middle", _definite(edge, garment))
     if _meets_last(edge, clause, garment):

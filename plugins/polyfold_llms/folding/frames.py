@@ -37,6 +37,7 @@ class Frame:
     negated: bool = False
     from_source: bool = False
     elliptical: bool = False
+    aside: bool = False
     context: NounPhrase | None = None
     leads: NounPhrase | None = None
     phrasal: bool = False

@@ -8,6 +8,7 @@ from polyfold_llms.folding.phrases import OPPOSITE, NounPhrase, starts_noun_phra
 from polyfold_llms.folding.tokens import Token
 
 __all__ = [
+    "LAYING",
     "LINES",
     "SEAMS",
     "SHAPES",
@@ -24,7 +25,24 @@ __all__ = [
 SHAPES = ("triangle", "result")
 """Nouns that name a shape after *into* and *make*."""
 
-SPANS = ("runs", "running", "run", "going", "goes", "extending", "extends", "leading", "leads", "drawn")
+LAYING = ("lay", "lie", "lying", "laid", "rest", "put", "plac", "set", "align")
+"""Beginnings of verbs after which *along* and *at* tell where something goes, not where the crease runs."""
+
+SPANS = (
+    "runs",
+    "running",
+    "run",
+    "going",
+    "goes",
+    "extending",
+    "extends",
+    "leading",
+    "leads",
+    "drawn",
+    "joins",
+    "connects",
+    "links",
+)
 """Verbs by which a line is described: *the diagonal that runs from ... to ...*."""
 
 LINES = ("crease", "diagonal", "midline", "gap", "third", "quarter")

@@ -142,7 +142,14 @@ def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> No
             continue
         wanted = steps if not explicit else None
         source = latest if frame.again else previous
-        for fold in folds_of_frame(frame, garment, source, wanted):
+        found = folds_of_frame(frame, garment, source, wanted)
+        if (
+            frame.aside
+            and garment.folds
+            and [(f.action, f.part) for f in found] == [(f.action, f.part) for f in garment.folds[-1:]]
+        ):
+            continue
+        for fold in found:
             garment.folds.append(fold)
             if len(garment.folds) > MAX_FOLDS + 4:
                 raise NotUnderstoodError("that is more folds than a piece of cloth can take")

@@ -247,6 +247,9 @@ def _unsided_edges(phrase: NounPhrase, garment: Garment, role: str) -> list[Part
     if triangle is not None and phrase.number == 2 and triangle.target == OPPOSITE_CORNER[triangle.part]:
         return [Part("corner", corner) for corner in CORNERS if corner not in (triangle.part, triangle.target)]
     last = next((fold for fold in reversed(garment.folds) if fold.action in ("half", "middle", "band")), None)
+    if phrase.quantity == "opposite" and phrase.number == 2:
+        garment.note("The instruction leaves open which two opposite edges; I take left and right.")
+        return [Part("edge", "left"), Part("edge", "right")]
     if phrase.quantity in ("other", "opposite"):
         if phrase.plural and last is not None and last.action == "middle":
             remaining = [e for e in EDGES if e not in {fold.part for fold in garment.folds}]

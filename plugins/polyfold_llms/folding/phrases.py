@@ -97,6 +97,12 @@ def noun_phrase(tokens: Sequence[Token], at: int) -> tuple[NounPhrase, int]:
                 found = replace(found, number=1)
                 at += 1
                 continue
+            if token.value == "one" and not (group or found.quantity) and at + 1 < len(tokens):
+                partitive = tokens[at + 1].is_("prep", "of") and starts_noun_phrase(tokens, at + 2)
+                if partitive:
+                    found = replace(found, number=1)
+                    at += 2
+                    continue
             if token.value == "one" and found.quantity and at + 1 < len(tokens) and tokens[at + 1].is_("prep", "of"):
                 at += 2
                 continue
@@ -128,13 +134,13 @@ def _counted(found: NounPhrase, token: Token) -> NounPhrase:
         return replace(found, number=int(token.value))
     if token.text == "others":
         return replace(found, quantity="other", plural=True)
-    return replace(found, quantity=token.value if found.quantity in (None, "all", "both") else found.quantity)
+    return replace(found, quantity=token.value if found.quantity in (None, "all", "both", "one") else found.quantity)
 
 
 def _named(found: NounPhrase, token: Token) -> NounPhrase:
     if found.noun:
         return replace(found, plural=found.plural or token.plural)
-    return replace(found, noun=token.value, plural=token.plural)
+    return replace(found, noun=token.value, plural=token.plural and found.number != 1)
 
 
 def _list_goes_on(found: NounPhrase, tokens: Sequence[Token], at: int) -> bool:

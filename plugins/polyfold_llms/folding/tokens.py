@@ -73,7 +73,20 @@ SIZE = re.compile(
     r"(?:\w+ )?(?:size|area|footprint)\b"
 )
 PLURAL_FOLDS = re.compile(r"\b(\w+)\s+(diagonal |half |simple |straight |single )?folds\b")
+SIMILE = re.compile(r"\blike (?!they do|you|i |it |to\b)[^,.;:]*")
+SIMILES = {
+    "shutter": "like shutters", "door": "like shutters", "cupboard": "like shutters", "gate": "like shutters",
+    "window": "like shutters", "cabinet": "like shutters", "wardrobe": "like shutters", "book": "like a book",
+    "letter": "like a letter", "envelope": "like an envelope", "blintz": "like an envelope", "shop": "like in a shop",
+    "store": "like in a shop",
+}  # fmt: skip
+"""Comparisons that say how to fold; others are dropped: *like the first step of a paper plane*."""
 LISTED = re.compile(r"(?:^|(?<=[\s.,;]))\(?\d[.)]\s")
+ANY_ORDER = re.compile(r"(?:the )?order (?:does not|doesn't|is not|isn't) (?:matter|important)|no matter the order")
+HANDS = re.compile(
+    r"\b(?:with|using) (?:one|both|two|your|the|its) (?:robot |robotic )?(?:arm|hand|gripper)s?(?: on)?\b"
+)
+QUARTER_WAY = re.compile(r"\b(?:a |one )?quarter of the way(?: in| up| down| across)?(?: from the \w+)?\b")
 TIMES = re.compile(r"\b(\d+|[a-z]+)\s+(?:more |separate |whole )?times\b(?! smaller)")
 
 
@@ -103,6 +116,7 @@ class Sentence:
 def read(text: str) -> Sentence:
     """Tag an instruction."""
     plain = _plain(text)
+    plain = SIMILE.sub(_simile, plain)
     plain = LISTED.sub(". ", plain)
     plain = COUNTED.sub(_count("stepcount"), plain)
     plain = PLURAL_FOLDS.sub(_count("stepcount", keep=2), plain)
@@ -115,7 +129,16 @@ def read(text: str) -> Sentence:
 
 def _plain(text: str) -> str:
     text = unicodedata.normalize("NFKD", text.lower()).replace("\u2019", "'").replace("\u2018", "'")
+    text = re.sub(r"\b(?:i|we)(?:'d| would)? like\b", " ", text)
+    text = re.sub(r"\blower (?=the |its |it\b)", "bring down ", text)
     text = NAMED_ASIDE.sub(" ", text)
+    text = re.sub(r"\bi\.e\.|\be\.g\.", " ", text).replace("ontop", "on top")
+    text = re.sub(
+        r"(?:the )?order (?:does not|doesn't|is not|isn't) (?:matter|important)|no matter the order", " ", text
+    )
+    text = HANDS.sub(" ", text)
+    if re.search(r"mid|cent", text):
+        text = QUARTER_WAY.sub(" ", text)
     text = re.sub(r"(_(?:left|right))\s*-\s*(?=[a-z]+_)", r"\1 to ", text)
     text = SIDED_NAME.sub(r"\2 \1", text.replace("leg_outer", "leg").replace("leg_inner", "leg"))
     text = (
@@ -147,6 +170,12 @@ def _count(name: str, keep: int = 0):
         return match.group(0) if number is None else f" {kept} {name}{number} "
 
     return replace
+
+
+def _simile(match: re.Match[str]) -> str:
+    known = next((phrase for word, phrase in SIMILES.items() if word in match.group(0)), None)
+    cut = re.search(r"\b(?:and|then|with)\b.*", match.group(0))
+    return f"{known or ''} {cut.group(0) if cut else ''}"
 
 
 def _number(word: str) -> int | None:
@@ -315,6 +344,6 @@ PART_WORDS = frozenset(
     {
         "corner", "edge", "side", "sleeve", "leg", "half", "third", "quarter", "border", "shoulder", "hem", "one",
         "part", "bottom", "top", "upper", "lower", "hand", "end", "arm", "cuff", "flap", "point", "left", "right",
-        "portion", "margin", "panel", "waist", "vertex",
+        "armpit", "neck", "collar", "armhole", "portion", "margin", "panel", "waist", "vertex",
     }
 )  # fmt: skip
