@@ -22,8 +22,8 @@ PICTURES = ("none", "failed", "all")
 LIMIT = 40_000
 """Most bytes of a picture."""
 
-PANEL, GAP = 264, 8
-PAPER = 255
+PANEL, GAP = 264, 2
+SEAM = (206, 210, 216)
 QUALITIES = (80, 65, 50, 30)
 
 
@@ -72,12 +72,11 @@ def _compressed(panels: list[NDArray[np.uint8]]) -> bytes:
 def _row(panels: list[NDArray[np.uint8]], size: int) -> NDArray[np.uint8]:
     from PIL import Image
 
-    gap = GAP * size // PANEL
-    row = np.full((size, len(panels) * (size + gap) - gap, 3), PAPER, np.uint8)
+    row = np.full((size, len(panels) * (size + GAP) - GAP, 3), SEAM, np.uint8)
     for index, panel in enumerate(panels):
         # Drawn at the camera's size and then made smaller: strokes stay fine, and what covers what stays the same.
         small = Image.fromarray(panel).resize((size, size), Image.Resampling.LANCZOS)
-        row[:, index * (size + gap) : index * (size + gap) + size] = small
+        row[:, index * (size + GAP) : index * (size + GAP) + size] = small
     return row
 
 

@@ -18,6 +18,7 @@ VERBS = {
     "garments": ("polyfold.cli.garments", "draw a picture sheet of seeded garments"),
     "evaluate": ("polyfold.cli.evaluate", "run a study: variants over tasks and garments"),
     "table": ("polyfold.cli.table", "tabulate an evaluation"),
+    "report": ("polyfold.cli.report", "write an evaluation as one HTML page"),
     "plugins": ("polyfold.cli.plugins", "list the installed plugins and their components"),
 }
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from polyfold.thumbnails import PICTURES
+
 __all__ = ["configure", "run"]
 
 
@@ -15,6 +17,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--workers", type=int, default=1, metavar="N", help="processes on this machine (default: 1)")
     parser.add_argument("--engine", choices=["local", "dask"], default="local", help="dask: a cluster")
     parser.add_argument("--address", metavar="URL", help="of the Dask scheduler (default: start one here)")
+    parser.add_argument(
+        "--pictures",
+        choices=PICTURES,
+        default="failed",
+        help="small pictures for the report; failed (default) has the first episode of each task too",
+    )
     parser.add_argument("--garments", type=int, metavar="N", help="garments per kind instead of the study's")
 
 
@@ -26,7 +34,14 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.garments is not None:
         chosen = study.Study(**{**chosen.model_dump(), "garments": arguments.garments})
     try:
-        found = results.run(chosen, arguments.out, arguments.workers, arguments.engine, arguments.address)
+        found = results.run(
+            chosen,
+            arguments.out,
+            arguments.workers,
+            arguments.engine,
+            arguments.address,
+            pictures=arguments.pictures,
+        )
     except KeyboardInterrupt:
         print(f"interrupted; what is finished is in {arguments.out}, run the same command to go on")
         raise

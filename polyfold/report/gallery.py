@@ -1,0 +1,132 @@
+"""The gallery: which episodes are shown, and their pictures as part of the page."""
+
+from __future__ import annotations
+
+import statistics
+from base64 import b64encode
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from polyfold.report.source import Source
+from polyfold.results import Record
+
+__all__ = ["LIMIT", "Card", "Gallery", "gallery"]
+
+LIMIT = 15_000_000
+"""Most characters of all embedded pictures together."""
+
+TYPES = {b"RIFF": "image/webp", b"\x89PNG": "image/png"}
+
+
+@dataclass(frozen=True)
+class Card:
+    """One episode to show.
+
+    Attributes:
+        record: the episode.
+        pick: why it stands out among its variant and kind: ``best``, ``median``, ``failure`` or nothing.
+        picture: data URI.
+        panels: pictures in the strip.
+    """
+
+    record: Record
+    pick: str
+    picture: str
+    panels: int
+
+
+@dataclass(frozen=True)
+class Gallery:
+    """The cards and what is missing.
+
+    Attributes:
+        cards: in the order of the variants; what stands out comes first.
+        pictured: episodes that have a picture on disk.
+        left_out: how many of these did not fit.
+        unpictured: episodes without a picture.
+    """
+
+    cards: Sequence[Card]
+    pictured: int
+    left_out: int
+    unpictured: int
+
+
+def gallery(source: Source, limit: int = LIMIT) -> Gallery:
+    """Choose and read pictures: what stands out first, then failures, then the rest, until the limit is reached."""
+    pictured = [record for record in source.records if _file(source.folder, record) is not None]
+    picks = _picks(source, pictured)
+    wanted = sorted(pictured, key=lambda record: (record["key"] not in picks, record["success"]["polyfold"]))
+    chosen: list[Card] = []
+    spent = 0
+    for record in wanted:
+        card = _card(source.folder, record, picks.get(record["key"], ""))
+        if card is not None and spent + len(card.picture) <= limit:
+            chosen.append(card)
+            spent += len(card.picture)
+    rank = {variant: index for index, variant in enumerate(source.variants)}
+    order = ("best", "median", "failure", "")
+    chosen.sort(key=lambda card: (rank.get(card.record["variant"], len(rank)), order.index(card.pick)))
+    unpictured = len(source.records) - len(pictured)
+    return Gallery(chosen, len(pictured), len(pictured) - len(chosen), unpictured)
+
+
+def _picks(source: Source, pictured: Sequence[Record]) -> dict[str, str]:
+    """Why which episodes stand out, by key; each once."""
+    found: dict[str, str] = {}
+    for variant in source.variants:
+        for kind in source.results.kinds():
+            mine = [record for record in pictured if (record["variant"], record["garment"]) == (variant, kind)]
+            for key, pick in _picks_of(mine, source.results.of(variant, kind)):
+                found.setdefault(key, pick)
+    return found
+
+
+def _picks_of(pictured: Sequence[Record], everything: Sequence[Record]) -> Iterator[tuple[str, str]]:
+    """The best, the median and the first failure of each cause; the median is that of all, pictured or not."""
+    scored = sorted((record for record in pictured if _error(record) is not None), key=_error)
+    successes = [record for record in scored if record["success"]["polyfold"]]
+    if successes:
+        yield successes[0]["key"], "best"
+    if scored:
+        middle = statistics.median(error for error in map(_error, everything) if error is not None)
+        yield min(scored, key=lambda record: abs(_error(record) - middle))["key"], "median"
+    causes: set[str] = set()
+    for record in pictured:
+        if not record["success"]["polyfold"] and record["cause"] not in causes:
+            causes.add(record["cause"])
+            yield record["key"], "failure"
+
+
+def _error(record: Record) -> float | None:
+    """What episodes are ranked by: the error of the moved part [mm]."""
+    return record["metrics"].get("moved-part")
+
+
+def _file(folder: Path, record: Record) -> Path | None:
+    """The picture's file; none if it is missing or lies outside of the run directory."""
+    if not record.get("picture"):
+        return None
+    path = (folder / record["picture"]).resolve()
+    return path if path.is_relative_to(folder.resolve()) and path.is_file() else None
+
+
+def _card(folder: Path, record: Record, pick: str) -> Card | None:
+    path = _file(folder, record)
+    data = path.read_bytes() if path else b""
+    media = next((media for start, media in TYPES.items() if data.startswith(start)), None)
+    if media is None:
+        return None
+    uri = f"data:{media};base64,{b64encode(data).decode()}"
+    return Card(record, pick, uri, _panels(data))
+
+
+def _panels(data: bytes) -> int:
+    """How many square panels stand side by side."""
+    from io import BytesIO
+
+    from PIL import Image
+
+    with Image.open(BytesIO(data)) as picture:
+        return max(1, round(picture.width / picture.height))

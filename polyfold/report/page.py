@@ -1,0 +1,151 @@
+"""The page: everything a report shows, in one file that fetches nothing."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from base64 import b64encode
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from polyfold.report.charts import percent_axis
+from polyfold.report.figures import (
+    cause_names,
+    cause_rows,
+    cause_table,
+    curve_panels,
+    headline,
+    idle_references,
+    legend,
+    stage_names,
+    success_panels,
+    time_rows,
+    time_table,
+)
+from polyfold.report.gallery import LIMIT, gallery
+from polyfold.report.source import Source, open_source
+from polyfold.report.tabular import comparison_html, table_html
+from polyfold.results import table
+from polyfold.scoring import PRESETS
+from polyfold.store import write_atomically
+
+__all__ = ["report_html", "write_report"]
+
+ASSETS = Path(__file__).parent
+
+
+def write_report(folder: str | Path, out: str | Path | None = None, noise_floor: float | None = None) -> Path:
+    """Write the report of a run directory; returns where it is.
+
+    Args:
+        folder: run directory of an evaluation, finished or not.
+        out: the HTML file; by default ``report.html`` in the run directory.
+        noise_floor: see :func:`report_html`.
+
+    Raises:
+        ConfigError: if there is no run directory.
+    """
+    page = report_html(folder, noise_floor)
+    path = Path(out) if out is not None else Path(folder) / "report.html"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_atomically(path, page)
+    return path
+
+
+def report_html(folder: str | Path, noise_floor: float | None = None) -> str:
+    """The report of a run directory as one self-contained HTML page.
+
+    Args:
+        folder: run directory of an evaluation, finished or not.
+        noise_floor: how far repeated runs of one variant differ in success, in percentage points, if it was measured;
+            it becomes a footnote to the comparisons.
+    """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    source = open_source(folder)
+    # Sentences, names and reasons come from people and models: everything is escaped unless it is markup of ours.
+    environment = Environment(
+        loader=FileSystemLoader(ASSETS),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("page.html").render(**_content(source), noise_floor=noise_floor, **_assets())
+
+
+def _assets() -> dict[str, Any]:
+    """Style and script, and a policy that lets a browser run these two and nothing else."""
+    from markupsafe import Markup
+
+    style = (ASSETS / "style.css").read_text("utf-8")
+    script = (ASSETS / "filters.js").read_text("utf-8")
+    policy = (
+        f"default-src 'none'; img-src data:; style-src {_hash(style)}; script-src {_hash(script)}; "
+        "base-uri 'none'; form-action 'none'"
+    )
+    return {"style": Markup(style), "script": Markup(script), "policy": Markup(policy)}
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+
+def _content(source: Source) -> dict[str, Any]:
+    study = source.results.study
+    first, *others = source.variants
+    return {
+        "study": study,
+        "kinds": source.results.kinds(),
+        "n": len(source.records),
+        "expected": source.expected,
+        "privileged": any(record["privileged"] for record in source.records),
+        "first": first,
+        "versions": source.versions,
+        "presets": {name: [_bound(threshold) for threshold in bounds] for name, bounds in PRESETS.items()},
+        "configuration": _toml(study.model_dump(mode="json")),
+        **(_figures(source, others) if source.records else {}),
+    }
+
+
+def _figures(source: Source, others: list[str]) -> dict[str, Any]:
+    results, first = source.results, source.variants[0]
+    run = [variant for variant in others if results.of(variant)] if results.of(first) else []
+    return {
+        "headline": headline(source) if results.of(first) else [],
+        "success": success_panels(source),
+        "tables": [
+            ("By task type", table_html(table(results, groups="type"), 2)),
+            ("By task", table_html(table(results, groups="task"), 2)),
+        ],
+        "by_kind": table_html(table(results), 2),
+        "comparison": comparison_html(results, first, run) if run else "",
+        "percent_axis": percent_axis(),
+        "idle": idle_references(source),
+        "curves": curve_panels(source),
+        "causes": {"legend": legend(cause_names(source)), "rows": cause_rows(source)},
+        "cause_table": table_html(cause_table(source), 2),
+        "times": {"legend": legend(stage_names(source)), "rows": time_rows(source)},
+        "time_table": table_html(time_table(source), 1),
+        "memory": max(record["peak_memory_mb"] for record in source.records),
+        "gallery": gallery(source),
+        "gallery_limit": LIMIT,
+    }
+
+
+def _bound(threshold: Any) -> str:
+    names = {"miou": "mIoU", "mppe": "MPPE", "moved-part": "moved part"}
+    unit = "" if threshold.higher_is_better else " mm"
+    sign = "≥" if threshold.higher_is_better else "≤"
+    return f"{names.get(threshold.metric, threshold.metric)} {sign} {threshold.bound:g}{unit}"
+
+
+def _toml(settings: Mapping[str, Any]) -> str:
+    """The study as the file that runs it again; as JSON if it was made in Python with values that TOML lacks."""
+    try:
+        return tomli_w.dumps(dict(settings))
+    except TypeError:
+        return json.dumps(settings, indent=2)
