@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from polyfold.errors import ConfigError
-from polyfold.statistics import Estimate, estimate, paired
+from polyfold.statistics import estimate, paired
 from polyfold.study import Study
 from polyfold.tables import Table, shown
 
@@ -83,6 +83,9 @@ SUCCESS: dict[str, Callable[[Record], float | None]] = {
 }
 """Columns of the tables: what is averaged."""
 
+DIGITS = {"mIoU": 3}
+"""Digits after the point, where they are not one."""
+
 
 def table(results: Results, columns: Sequence[str] = tuple(SUCCESS), groups: str = "kind") -> Table:
     """Variants by garment kind (``kind``), task type (``type``), task (``task``) or over all (``none``).
@@ -95,12 +98,16 @@ def table(results: Results, columns: Sequence[str] = tuple(SUCCESS), groups: str
     rows = []
     for variant in results.study.variants:
         for group, records in _grouped(results, variant, keys[groups]):
-            cells = [shown(estimate([SUCCESS[column](record) for record in records])) for column in columns]
+            cells = [_mean(column, records) for column in columns]
             rows.append([_marked(variant, records), group, str(len(records)), *cells])
     note = f"{results.study.name}: mean [95 % bootstrap interval]; reference: the oracle from the same start."
     if any(record["privileged"] for record in results.records):
         note += " * privileged: sees more than the camera."
     return Table(["variant", groups if groups != "none" else "", "n", *columns], rows, note)
+
+
+def _mean(column: str, records: Sequence[Record]) -> str:
+    return shown(estimate([SUCCESS[column](record) for record in records]), DIGITS.get(column, 1))
 
 
 def _marked(variant: str, records: Sequence[Record]) -> str:
@@ -130,17 +137,16 @@ def compare(results: Results, variant: str, baseline: str) -> Table:
     for kind in [*results.kinds(), "all"]:
         keys = [key for key in shared if kind in ("all", ours[key]["garment"])]
         if keys:
-            found = [
-                _difference(column, [ours[key] for key in keys], [theirs[key] for key in keys]) for column in SUCCESS
-            ]
-            rows.append([kind, str(len(keys)), *(shown(value, signed=True) for value in found)])
+            pair = [ours[key] for key in keys], [theirs[key] for key in keys]
+            rows.append([kind, str(len(keys)), *(_difference(column, *pair) for column in SUCCESS)])
     note = f"{variant} − {baseline}, the same episodes; mean [95 % bootstrap interval]."
     return Table(["kind", "n", *SUCCESS], rows, note)
 
 
-def _difference(column: str, ours: Sequence[Record], theirs: Sequence[Record]) -> Estimate:
+def _difference(column: str, ours: Sequence[Record], theirs: Sequence[Record]) -> str:
     value = SUCCESS[column]
-    return paired([value(record) for record in ours], [value(record) for record in theirs])
+    found = paired([value(record) for record in ours], [value(record) for record in theirs])
+    return shown(found, DIGITS.get(column, 1), signed=True)
 
 
 def _by_episode(records: Sequence[Record]) -> dict[tuple[Any, ...], Record]:

@@ -67,10 +67,9 @@ def _latex_row(cells: Sequence[str]) -> str:
     return " & ".join("".join(special.get(letter, letter) for letter in cell) for cell in cells) + r" \\"
 
 
-def shown(value: Estimate, signed: bool = False) -> str:
+def shown(value: Estimate, digits: int = 1, signed: bool = False) -> str:
     """An estimate as text: ``94.0 [92.1, 95.6]``; a dash if there was nothing to measure."""
     if math.isnan(value.mean):
         return "–"
-    digits = 3 if max(abs(value.mean), abs(value.high)) <= 1.0 else 1
     sign = "+" if signed else ""
     return f"{value.mean:{sign}.{digits}f} [{value.low:.{digits}f}, {value.high:.{digits}f}]"
