@@ -55,6 +55,9 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
             ahead = ahead_of(garment, folds)
             folds += fold_whole(clause, ahead, steps)
         return folds
+    corners = [p.text for p in frame.restated if p.noun == "corner" and (p.plural or p.number)]
+    if corners and moving[0].what == "edge" and clause.toward(*MIDDLE):
+        raise NotUnderstoodError(f"it is unclear whether “{frame.moving[0].text}” or “{corners[0]}” is to be folded")
     for _ in range(frame.times):
         folds += _fold_parts(moving, clause, ahead_of(garment, folds))
     return folds
@@ -112,6 +115,7 @@ def _inherited(frame: Frame, previous: Frame | None) -> Frame:
             excluded=[],
             leads=frame.leads,
             manners=frame.manners or previous.manners,
+            context=next((p for p in previous.moving if p.noun), frame.context),
         )
     if frame.again and not frame.moving and frame.targets:
         return replace(frame, moving=previous.moving)

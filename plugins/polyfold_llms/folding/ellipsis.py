@@ -19,18 +19,24 @@ def _merged(frames: list[Frame]) -> list[Frame]:
     """Join *take the hem* and *fold it up*, *crease from here to there* and *fold that corner over*."""
     merged: list[Frame] = []
     for frame in frames:
-        previous = merged[-1] if merged else None
-        if previous is not None and _continues(previous, frame):
-            merged[-1] = _joined(previous, frame)
-        elif previous is not None and previous.specific and frame.verbs[:1] == ["crease"] and not frame.specific:
-            merged[-1] = replace(previous, axes=previous.axes + frame.axes, targets=previous.targets + frame.targets)
-        elif (previous is not None and _goes_over(previous, frame)) or (
-            previous is not None and previous.verbs == ["crease"] and previous.axes and not previous.specific
-        ):
-            merged[-1] = replace(frame, axes=previous.axes + frame.axes)
-        else:
+        joined = _with_previous(merged[-1], frame) if merged else None
+        if joined is None:
             merged.append(frame)
+        else:
+            merged[-1] = joined
     return merged
+
+
+def _with_previous(previous: Frame, frame: Frame) -> Frame | None:
+    """Both clauses as one, or None if each stands on its own."""
+    if _continues(previous, frame):
+        return _joined(previous, frame)
+    if previous.specific and frame.verbs[:1] == ["crease"] and not frame.specific:
+        return replace(previous, axes=previous.axes + frame.axes, targets=previous.targets + frame.targets)
+    creased = previous.verbs == ["crease"] and previous.axes and not previous.specific
+    if creased or _goes_over(previous, frame):
+        return replace(frame, axes=previous.axes + frame.axes)
+    return None
 
 
 def _continues(previous: Frame, frame: Frame) -> bool:

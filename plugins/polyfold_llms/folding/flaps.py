@@ -119,6 +119,8 @@ def fold_corners(names: list[str], clause: Clause, garment: Garment) -> list[Fol
     """Two corners that move as one edge, or onto each other."""
     if len(names) != 2:
         return None
+    if clause.toward(*MIDDLE) or clause.has("meetmiddle"):
+        return None
     first, second = names
     if second == OPPOSITE_CORNER[first]:
         if (clause.has("together") or "meet" in clause.frame.verbs) and not clause.toward(*MIDDLE):
