@@ -17,14 +17,15 @@ __all__ = ["FlatFit", "Start", "fit_flat", "spread_starts"]
 
 Floats = NDArray[np.float64]
 
-_STARTS, _APART = 8, np.radians(30.0)
+_STARTS, _APART = 16, np.radians(15.0)
 """How many headings go through the symmetric stage, and their least distance."""
 
-_FREE = 4
+_FREE = 8
 """How many of them go through the free stage."""
 
-_DELTA = 4.0
-"""Distance [px at scale 1] beyond which a contour sample counts linearly."""
+_DELTA, _FAR_DELTA = 4.0, 12.0
+"""Distance [px at scale 1] beyond which a contour sample counts linearly: at the end, and before that, when far
+samples are still to pull the free vertices out of shallow minima."""
 
 _SHARP = 30.0
 """Least turn of the outline at a protruding corner [deg]."""
@@ -63,7 +64,7 @@ def fit_flat(template: Template, evidence: Evidence, rotations: int = 24) -> lis
     Returns:
         Explanations with different headings, best first; at least one.
     """
-    objective = Energy(template, evidence, _DELTA)
+    objective, far_sighted = (Energy(template, evidence, delta) for delta in (_DELTA, _FAR_DELTA))
     symmetric = []
     for start in spread_starts(template, evidence, rotations):
         vertices, energy = levenberg_marquardt(objective, template.generator, start.vertices, 15)
@@ -71,7 +72,8 @@ def fit_flat(template: Template, evidence: Evidence, rotations: int = 24) -> lis
     symmetric.sort(key=lambda fit: fit.energy)
     free = []
     for fit in symmetric[:_FREE]:
-        vertices, energy = levenberg_marquardt(objective, FreeVertices(), fit.vertices, 40)
+        vertices, _ = levenberg_marquardt(far_sighted, FreeVertices(), fit.vertices, 40)
+        vertices, energy = levenberg_marquardt(objective, FreeVertices(), vertices, 40)
         free.append(FlatFit(on_contour(template, vertices, evidence), energy, fit.heading))
     return sorted(free, key=lambda fit: fit.energy)
 

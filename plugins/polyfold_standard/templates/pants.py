@@ -36,6 +36,8 @@ def pants_template() -> Template:
             leg_shape(waist=0.2, length=0.9, rise=0.26, gap=0.025, leg=0.16),
         ],
         penalties=leg_penalties(LegRanges()),
+        # Where the legs nearly touch, the contour ends below the crotch.
+        covered=("crotch",),
     )
 
 
@@ -103,7 +105,7 @@ class LegRanges:
     """
 
     slender: tuple[float, float] = (0.9, 4.5)
-    rise: tuple[float, float] = (0.2, 0.6)
+    rise: tuple[float, float] = (0.29, 0.37)
     crotch: tuple[float, float] = (0.35, 0.65)
     gap: tuple[float, float] = (-0.02, 2.0)
     leg: tuple[float, float] = (0.22, 0.75)
