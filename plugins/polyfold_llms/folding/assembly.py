@@ -72,6 +72,11 @@ class _Assembler(SmallWords):
             from_here = at + 1 < len(self.tokens) and (
                 self.tokens[at + 1].is_("prep", "from", "until", "along") or self.tokens[at + 1].is_("join", "comma")
             )
+            if token.text == "half" and self.frame.empty and self._named_next(at):
+                self.frame.verbs.append("halve")
+                self.frame.fractions.append("half")
+                at += 1
+                continue
             if token.text in ("crease", "quarter") and self.frame.empty and (follows or from_here):
                 self.frame.verbs.append("crease" if token.text == "crease" else "fold")
                 self.frame.fractions += ["quarter"] if token.text == "quarter" else []
@@ -112,6 +117,10 @@ class _Assembler(SmallWords):
     def _on_stop(self, token: Token, at: int) -> None:
         self._close("sentence")
         self.sentence_start = len(self.done)
+
+    def _named_next(self, at: int) -> bool:
+        """``half the towel``, with a missing letter."""
+        return at + 1 < len(self.tokens) and self.tokens[at + 1].category in ("garment", "pronoun", "goal")
 
     def _comes_earlier(self, at: int) -> bool:
         """``..., but fold the sleeves in first``."""
@@ -179,6 +188,10 @@ class _Assembler(SmallWords):
             first, self.frame.leads = self.frame.leads, None
             self._close()
             self.frame.moving.append(first)
+        if value == "cover" and self.frame.specific and not self.joined:
+            self.frame.verbs.append("meet")
+            self.role = "target"
+            return
         if self.shaping and value == "tidy":
             self.frame.goals.append("tidy")
             return

@@ -12,7 +12,14 @@ __all__ = ["completed"]
 
 def completed(frames: list[Frame]) -> list[Frame]:
     """The clauses with what they leave out filled in from the one before or after."""
-    return _announced(_forward(_merged(frames)))
+    return _announced(_forward(_merged([*map(_as_goal, frames[:1]), *frames[1:]])))
+
+
+def _as_goal(frame: Frame) -> Frame:
+    """*Triangle first*: a shape without a verb is what is to be made."""
+    if frame.verbs or frame.fractions or not any(p.noun == "triangle" for p in frame.moving):
+        return frame
+    return replace(frame, moving=[], leads=None, goals=[*frame.goals, "triangle"])
 
 
 def _merged(frames: list[Frame]) -> list[Frame]:

@@ -171,9 +171,7 @@ def _attachments(found: NounPhrase, tokens: Sequence[Token], at: int) -> tuple[N
         if token.is_("prep", "of") and starts_noun_phrase(tokens, at + 1):
             inner, at = noun_phrase(tokens, at + 1)
             found = _part_of(found, inner)
-        elif (token.is_("prep", "in", "along", "to") and token.text in ("in", "at", "on")) and (
-            tokens[at + 1].category == "side"
-        ):
+        elif tokens[at + 1].category == "side" and _locates(found, token):
             inner, after = noun_phrase(tokens, at + 1)
             if inner.noun not in (None, "edge") or len(inner.sides) != 1 or not _may_place(found, inner.sides[0]):
                 break
@@ -182,6 +180,13 @@ def _attachments(found: NounPhrase, tokens: Sequence[Token], at: int) -> tuple[N
         else:
             break
     return found, at
+
+
+def _locates(found: NounPhrase, token: Token) -> bool:
+    """Whether a preposition can begin *on the left*, *at the bottom*, *along the top edge*."""
+    if token.category != "prep":
+        return False
+    return token.text in ("in", "at", "on") or (token.text == "along" and found.noun == "corner" and not found.sides)
 
 
 def _may_place(found: NounPhrase, sides: frozenset[str]) -> bool:
