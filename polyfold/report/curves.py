@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from polyfold.results import Record
 from polyfold.scoring import PRESETS, Threshold
 
-__all__ = ["SCALES", "Curve", "success_curve", "wilson"]
+__all__ = ["SCALES", "Curve", "scaled", "success_curve", "wilson"]
 
 SCALES = tuple(float(scale) for scale in np.linspace(0.25, 2.0, 36))
 """Factors on the thresholds of the preset ``polyfold``."""
@@ -44,6 +44,12 @@ def success_curve(records: Sequence[Record]) -> Curve:
     intervals = [wilson(count, n) for count in counts]
     shares = tuple(count / n if n else 0.0 for count in counts)
     return Curve(shares, tuple(low for low, _ in intervals), tuple(high for _, high in intervals), n)
+
+
+def scaled(threshold: Threshold, scale: float) -> Threshold:
+    """A threshold loosened or tightened by a factor, as :func:`success_curve` does it."""
+    bound = 1.0 - scale * (1.0 - threshold.bound) if threshold.higher_is_better else scale * threshold.bound
+    return replace(threshold, bound=bound)
 
 
 def _needed_scale(record: Record) -> float:

@@ -30,12 +30,12 @@ __all__ = [
 STAGES = ("reset", "subgoals", "grounding", "language", "policy", "execution")
 
 COLOUR = {
-    "reset": 6, "infrastructure": 6, "subgoals": 1, "subgoal": 1, "grounding": 5, "language": 3, "fold line": 3,
-    "policy": 2, "execution": 0,
+    "reset": 6, "infrastructure": 6, "subgoals": 1, "subgoal": 1, "grounding": 2, "language": 3, "fold line": 3,
+    "policy": 4, "execution": 0,
 }  # fmt: skip
 """Colours of stages and causes: what belongs together looks alike in both charts."""
 
-OTHER = 4
+OTHER = 5
 
 
 def legend(names: Iterable[str]) -> list[tuple[str, int]]:

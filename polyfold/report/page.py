@@ -12,6 +12,7 @@ from typing import Any
 import tomli_w
 
 from polyfold.report.charts import percent_axis
+from polyfold.report.curves import scaled
 from polyfold.report.figures import (
     cause_names,
     cause_rows,
@@ -27,13 +28,14 @@ from polyfold.report.figures import (
 )
 from polyfold.report.gallery import LIMIT, gallery
 from polyfold.report.source import Source, open_source
-from polyfold.report.tabular import comparison_html, table_html
+from polyfold.report.tabular import comparison_html, success_first, table_html
 from polyfold.results import table
-from polyfold.scoring import PRESETS
+from polyfold.scoring import PRESETS, Threshold
 from polyfold.store import write_atomically
 
 __all__ = ["report_html", "write_report"]
 
+NO_BREAK = "\N{NO-BREAK SPACE}"
 ASSETS = Path(__file__).parent
 
 
@@ -118,14 +120,15 @@ def _figures(source: Source, others: list[str]) -> dict[str, Any]:
         "headline": headline(source) if results.of(first) else [],
         "success": success_panels(source),
         "tables": [
-            ("By task type", table_html(table(results, groups="type"), 2)),
-            ("By task", table_html(table(results, groups="task"), 2)),
+            ("By task type", table_html(success_first(table(results, groups="type")), 2)),
+            ("By task", table_html(success_first(table(results, groups="task")), 2)),
         ],
-        "by_kind": table_html(table(results), 2),
+        "by_kind": table_html(success_first(table(results)), 2),
         "comparison": comparison_html(results, first, run) if run else "",
         "percent_axis": percent_axis(),
         "idle": idle_references(source),
         "curves": curve_panels(source),
+        "half": [_bound(scaled(threshold, 0.5)) for threshold in PRESETS["polyfold"]],
         "causes": {"legend": legend(cause_names(source)), "rows": cause_rows(source)},
         "cause_table": table_html(cause_table(source), 2),
         "times": {"legend": legend(stage_names(source)), "rows": time_rows(source)},
@@ -136,11 +139,12 @@ def _figures(source: Source, others: list[str]) -> dict[str, Any]:
     }
 
 
-def _bound(threshold: Any) -> str:
+def _bound(threshold: Threshold) -> str:
     names = {"miou": "mIoU", "mppe": "MPPE", "moved-part": "moved part"}
     unit = "" if threshold.higher_is_better else " mm"
     sign = "≥" if threshold.higher_is_better else "≤"
-    return f"{names.get(threshold.metric, threshold.metric)} {sign} {threshold.bound:g}{unit}"
+    text = f"{names.get(threshold.metric, threshold.metric)} {sign} {threshold.bound:g}{unit}"
+    return text.replace(" ", NO_BREAK)
 
 
 def _toml(settings: Mapping[str, Any]) -> str:
