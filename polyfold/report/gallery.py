@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import statistics
 from base64 import b64encode
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -78,25 +78,23 @@ def _picks(source: Source, pictured: Sequence[Record]) -> dict[str, str]:
     for variant in source.variants:
         for kind in source.results.kinds():
             mine = [record for record in pictured if (record["variant"], record["garment"]) == (variant, kind)]
-            for key, pick in _picks_of(mine, source.results.of(variant, kind)):
-                found.setdefault(key, pick)
+            found |= _picks_of(mine, source.results.of(variant, kind))
     return found
 
 
-def _picks_of(pictured: Sequence[Record], everything: Sequence[Record]) -> Iterator[tuple[str, str]]:
-    """The best, the median and the first failure of each cause; the median is that of all, pictured or not."""
+def _picks_of(pictured: Sequence[Record], everything: Sequence[Record]) -> dict[str, str]:
+    """The best, the median and the first further failure of each cause; the median is that of all, pictured or not."""
+    found: dict[str, str] = {}
     scored = sorted((record for record in pictured if _error(record) is not None), key=_error)
     successes = [record for record in scored if record["success"]["polyfold"]]
     if successes:
-        yield successes[0]["key"], "best"
+        found[successes[0]["key"]] = "best"
     if scored:
         middle = statistics.median(error for error in map(_error, everything) if error is not None)
-        yield min(scored, key=lambda record: abs(_error(record) - middle))["key"], "median"
-    causes: set[str] = set()
-    for record in pictured:
-        if not record["success"]["polyfold"] and record["cause"] not in causes:
-            causes.add(record["cause"])
-            yield record["key"], "failure"
+        found.setdefault(min(scored, key=lambda record: abs(_error(record) - middle))["key"], "median")
+    failures = [r for r in pictured if not r["success"]["polyfold"] and r["key"] not in found]
+    first_of_cause = {record["cause"]: record["key"] for record in reversed(failures)}
+    return found | dict.fromkeys(first_of_cause.values(), "failure")
 
 
 def _error(record: Record) -> float | None:
