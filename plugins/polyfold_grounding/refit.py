@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold.errors import PlanError
 from polyfold.geometry import resample
 from polyfold.polygon import FoldedModel
 from polyfold.types import FoldLine
@@ -121,6 +122,14 @@ class Silhouette:
         if self._line is not None:
             model = model.fold(self.line(parameters))
         return model.transformed(float(parameters[2]), parameters[:2], self.centre)
+
+    def can_fold(self, parameters: Floats) -> bool:
+        """Whether the refitted line still has cloth on both sides of the model."""
+        try:
+            self.moved(parameters)
+        except PlanError:
+            return False
+        return True
 
     def line(self, parameters: Floats) -> FoldLine:
         """The refitted line, before the motion."""

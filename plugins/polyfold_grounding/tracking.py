@@ -82,7 +82,7 @@ def next_model(
     if found.best.chamfer > _UNREMARKABLE * evidence.scale:
         found = min([found, *_with_a_fold_undone(model, seen, line, evidence, found)], key=_judged)
     if found.best.chamfer > displaced * evidence.scale:
-        found = _anywhere(found, evidence, displaced)
+        found = _anywhere(found, evidence)
     notes = found.notes
     if _ambiguous(found, evidence.scale):
         notes += ("ambiguous silhouette: another pose of the garment explains it as well",)
@@ -131,9 +131,10 @@ def _with_a_fold_undone(
             continue
 
 
-def _anywhere(found: _Explanation, evidence: Evidence, displaced: float) -> _Explanation:
+def _anywhere(found: _Explanation, evidence: Evidence) -> _Explanation:
     """The same model searched at all rotations, if that is much better; a word of warning if nothing is."""
-    best, *rivals = register(found.silhouette, evidence)
+    registered = [r for r in register(found.silhouette, evidence) if found.silhouette.can_fold(r.parameters)]
+    best, *rivals = registered or [found.best]
     if best.chamfer < _MUCH_BETTER * found.best.chamfer:
         notes = (*found.notes, "the garment was displaced and has been found again")
         return replace(found, best=best, rivals=rivals, notes=notes)
@@ -144,8 +145,13 @@ def _anywhere(found: _Explanation, evidence: Evidence, displaced: float) -> _Exp
 
 
 def _explain(silhouette: Silhouette) -> _Explanation:
+    """The best pose, and last fold line, of a model; raises PlanError if no line that explains the picture folds it."""
     if silhouette.folds:
-        best, *rivals = refit_fold(silhouette)
+        found = refit_fold(silhouette)
+        folding = [refit for refit in found if silhouette.can_fold(refit.parameters)]
+        if not folding:
+            raise PlanError("the line that explains the picture best leaves all cloth on one side; plan another fold")
+        best, *rivals = folding
         return _Explanation(silhouette, best, rivals)
     rigid = silhouette.minimise(silhouette.rest, (0, 1, 2), 15.0)
     return _Explanation(silhouette, silhouette.minimise(rigid.parameters, (0, 1, 2), 4.0, anchored=False), [])

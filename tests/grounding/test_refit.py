@@ -117,3 +117,14 @@ def test_refitting_is_a_pure_function(grounding):
     second = grounding.ground(None, mask, template_of("tshirt"), scene, line)
     assert first.text == second.text
     np.testing.assert_array_equal(first.model.rest, second.model.rest)
+
+
+def test_a_fold_near_the_edge_never_breaks_the_grounding(grounding):
+    scene, truth = start(grounding, "rectangle", 2019)
+    right = truth.rest[:, 0].max()
+    for planned in (right - 8, right - 4, right - 2, right - 1):
+        line = FoldLine((planned, 400), (planned, 0)).reversed()
+        for executed in (0, 3, 12):
+            mask = mask_of(truth.fold(FoldLine((right - 20 + executed, 0), (right - 20 + executed, 400))))
+            after = grounding.ground(None, mask, template_of("rectangle"), scene, line)
+            assert np.isfinite(after.model.rest).all()
