@@ -14,7 +14,7 @@ $(STAMP): pyproject.toml constraints.txt
 demo: $(STAMP)
 	$(BIN)/polyfold fold "fold the t-shirt into a rectangular block" --garment tshirt --seed 0 --out runs/demo
 	$(BIN)/polyfold garments --out runs/demo/garments.png
-	$(BIN)/polyfold fold "fold it in half" --garment tshirt --outline tests/data/artf_sample.jsonl --out runs/demo-twin
+	$(BIN)/polyfold fold "fold it in half" --garment tshirt --outline tests/data/artf_tshirt.json --out runs/demo-twin
 
 test: $(STAMP)
 	$(BIN)/python -m pytest -n 2 --dist loadfile
