@@ -41,6 +41,12 @@ class Results:
         found = {record["garment"] for record in self.records}
         return [kind for kind in KINDS if kind in found] + sorted(found - set(KINDS))
 
+    def plot(self, column: str = "success %") -> Any:
+        """Bars per garment kind and variant with intervals, as a matplotlib figure."""
+        from polyfold.plots import bars
+
+        return bars(self, column)
+
     def _repr_html_(self) -> str:
         return table(self).html()
 
