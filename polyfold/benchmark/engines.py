@@ -1,8 +1,9 @@
 """The same half fold in our simulator and in other engines: ``python -m polyfold.benchmark.engines``.
 
 Needs PyBullet and ``pip install newton``; an engine that isn't installed is skipped. Times are processor seconds per
-fold, loading and compiling left out. The other engines get plain settings, not tuned ones: one that explodes or gives up
-here may do better with others. The grippers hold all layers within 15 mm of the picks and turn them along half an ellipse.
+fold, loading and compiling left out. The other engines get plain settings, not tuned ones: one that explodes or
+gives up here may do better with others. The grippers hold all layers within 15 mm of the picks and turn them along
+half an ellipse.
 """
 
 from __future__ import annotations

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from polyfold import geometry
 from polyfold.garments import Garment
-from polyfold.types import Action, Camera, FoldLine, Observation, SimState
+from polyfold.types import Action, FoldLine, Observation, SimState
 
 __all__ = ["SCRIPTS", "Script", "Trial", "cloth_mask", "mask_of", "random_action", "sized"]
 
@@ -191,8 +190,3 @@ def sized(kind: str, seed: int, particles: int) -> Garment:
         garment = maker.generate(seed, edge_length)
         edge_length *= float(np.sqrt(len(garment.mesh.vertices) / particles))
     return maker.generate(seed, edge_length)
-
-
-def named_points(state: SimState, camera: Camera) -> Mapping[str, Floats]:
-    """Keypoints in the picture [px]."""
-    return {name: camera.to_pixels(point) for name, point in state.keypoint_positions().items()}

@@ -93,7 +93,7 @@ def _random_rows(folds: int, seed: int) -> list[Row]:
 
 
 def _random_folds(result: RandomFolds, folds: int, seed: int) -> Iterator[None]:
-    """Fold garments of all kinds one to three times each, in place of ``result`` being returned at the end."""
+    """Fold garments of all kinds one to three times each, filling ``result``."""
     simulator = plugins.create("simulators", "xpbd")
     done = 0
     while done < folds:
