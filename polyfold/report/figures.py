@@ -49,7 +49,7 @@ def _success(records: Sequence[Record], preset: str = "polyfold") -> Estimate:
 
 def headline(source: Source) -> list[dict[str, str]]:
     """The first variant's figures: what is read first."""
-    records = source.results.of(source.variants[0])
+    records = source.of(source.variants[0])
     metrics = (("mIoU", "miou", ""), ("moved part", "moved-part", "mm"))
     figures = [("success", _success(records), "%"), ("success, strict", _success(records, "strict"), "%")]
     figures += [
@@ -69,7 +69,7 @@ def success_panels(source: Source) -> list[dict[str, Any]]:
     for heading, kind in source.groups():
         rows = []
         for index, variant in enumerate(source.variants):
-            records = source.results.of(variant, kind)
+            records = source.of(variant, kind)
             if records:
                 value = _success(records)
                 rows.append({"variant": variant, "chart": dot(value, index), "mean": f"{value.mean:.1f}"})
@@ -78,7 +78,7 @@ def success_panels(source: Source) -> list[dict[str, Any]]:
 
 
 def _most(source: Source, kind: str | None) -> int:
-    return max(len(source.results.of(variant, kind)) for variant in source.variants)
+    return max(len(source.of(variant, kind)) for variant in source.variants)
 
 
 def curve_panels(source: Source) -> list[dict[str, Any]]:
@@ -86,7 +86,7 @@ def curve_panels(source: Source) -> list[dict[str, Any]]:
     bands = len(source.variants) <= 4
     panels = []
     for heading, kind in source.groups():
-        curves = [(variant, success_curve(source.results.of(variant, kind))) for variant in source.variants]
+        curves = [(variant, success_curve(source.of(variant, kind))) for variant in source.variants]
         panels.append({"heading": heading, "n": _most(source, kind), "chart": curve_panel(heading, curves, bands)})
     return panels
 
@@ -115,7 +115,7 @@ def cause_rows(source: Source) -> list[dict[str, Any]]:
     """What became of every variant's episodes: causes of failures, and successes as the quiet rest."""
     names, rows = cause_names(source), []
     for variant in source.variants:
-        records = source.results.of(variant)
+        records = source.of(variant)
         if records:
             counts = _causes(records)
             parts = [_part(name, counts[name], f"{counts[name]}", f"{name}: {counts[name]}") for name in names]
@@ -135,7 +135,7 @@ def cause_table(source: Source) -> Table:
     names, rows = cause_names(source), []
     for variant in source.variants:
         for heading, kind in source.groups():
-            records = source.results.of(variant, kind)
+            records = source.of(variant, kind)
             if records:
                 counts = _causes(records)
                 cells = [f"{counts[name]}" if counts[name] else "·" for name in names]
@@ -152,7 +152,7 @@ def stage_names(source: Source) -> list[str]:
 def time_rows(source: Source) -> list[dict[str, Any]]:
     """Mean time of an episode by stage, all variants on one scale."""
     stages = stage_names(source)
-    means = {variant: _stage_means(source.results.of(variant), stages) for variant in source.variants}
+    means = {variant: _stage_means(source.of(variant), stages) for variant in source.variants}
     longest = max((sum(mean.values()) for mean in means.values()), default=0.0)
     return [
         {
@@ -175,7 +175,7 @@ def time_table(source: Source) -> Table:
     """Mean seconds by stage, and the mean, median and 95th percentile of whole episodes."""
     stages, rows = stage_names(source), []
     for variant in source.variants:
-        records = source.results.of(variant)
+        records = source.of(variant)
         if not records:
             continue
         totals = sorted(sum(record["seconds"].values()) for record in records)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import statistics
 from base64 import b64encode
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,22 +55,56 @@ class Gallery:
 
 
 def gallery(source: Source, limit: int = LIMIT) -> Gallery:
-    """Choose and read pictures: what stands out first, then failures, then the rest, until the limit is reached."""
-    pictured = [record for record in source.records if _file(source.folder, record) is not None]
+    """Choose and read pictures until the limit is reached.
+
+    What stands out comes first, then failures, then successes, each in turn from every variant, kind and cause, so that
+    what is rare is not crowded out.
+    """
+    files = _files(source)
+    pictured = [record for record in source.records if record["key"] in files]
     picks = _picks(source, pictured)
-    wanted = sorted(pictured, key=lambda record: (record["key"] not in picks, record["success"]["polyfold"]))
+    turns = _turns(pictured)
+    wanted = sorted(
+        pictured,
+        key=lambda record: (record["key"] not in picks, record["success"]["polyfold"], turns[record["key"]]),
+    )
     chosen: list[Card] = []
     spent = 0
     for record in wanted:
-        card = _card(source.folder, record, picks.get(record["key"], ""))
-        if card is not None and spent + len(card.picture) <= limit:
-            chosen.append(card)
+        card = _card(files[record["key"]], record, picks.get(record["key"], ""))
+        if card is not None:
             spent += len(card.picture)
+            if spent > limit:
+                break
+            chosen.append(card)
     rank = {variant: index for index, variant in enumerate(source.variants)}
     order = ("best", "median", "failure", "")
     chosen.sort(key=lambda card: (rank.get(card.record["variant"], len(rank)), order.index(card.pick)))
     unpictured = len(source.records) - len(pictured)
     return Gallery(chosen, len(pictured), len(pictured) - len(chosen), unpictured)
+
+
+def _files(source: Source) -> dict[str, Path]:
+    """Pictures by the key of their episode, without those that are missing or lie outside of the run directory."""
+    root = source.folder.resolve()
+    found = {}
+    for record in source.records:
+        if record.get("picture"):
+            path = (root / record["picture"]).resolve()
+            if path.is_relative_to(root) and path.is_file():
+                found[record["key"]] = path
+    return found
+
+
+def _turns(records: Sequence[Record]) -> dict[str, int]:
+    """How many episodes of the same variant, kind and cause come before each, by key."""
+    seen: Counter[tuple[str, str, str | None]] = Counter()
+    turns = {}
+    for record in records:
+        group = (record["variant"], record["garment"], record["cause"])
+        turns[record["key"]] = seen[group]
+        seen[group] += 1
+    return turns
 
 
 def _picks(source: Source, pictured: Sequence[Record]) -> dict[str, str]:
@@ -78,7 +113,7 @@ def _picks(source: Source, pictured: Sequence[Record]) -> dict[str, str]:
     for variant in source.variants:
         for kind in source.results.kinds():
             mine = [record for record in pictured if (record["variant"], record["garment"]) == (variant, kind)]
-            found |= _picks_of(mine, source.results.of(variant, kind))
+            found |= _picks_of(mine, source.of(variant, kind))
     return found
 
 
@@ -102,17 +137,8 @@ def _error(record: Record) -> float | None:
     return record["metrics"].get("moved-part")
 
 
-def _file(folder: Path, record: Record) -> Path | None:
-    """The picture's file; none if it is missing or lies outside of the run directory."""
-    if not record.get("picture"):
-        return None
-    path = (folder / record["picture"]).resolve()
-    return path if path.is_relative_to(folder.resolve()) and path.is_file() else None
-
-
-def _card(folder: Path, record: Record, pick: str) -> Card | None:
-    path = _file(folder, record)
-    data = path.read_bytes() if path else b""
+def _card(path: Path, record: Record, pick: str) -> Card | None:
+    data = path.read_bytes()
     media = next((media for start, media in TYPES.items() if data.startswith(start)), None)
     if media is None:
         return None

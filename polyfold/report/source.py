@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,19 @@ class Source:
     def records(self) -> Sequence[Record]:
         """The finished episodes."""
         return self.results.records
+
+    def of(self, variant: str, kind: str | None = None) -> Sequence[Record]:
+        """Records of a variant, of one garment kind or of all."""
+        return self._by_group.get((variant, kind), [])
+
+    @cached_property
+    def _by_group(self) -> Mapping[tuple[str, str | None], Sequence[Record]]:
+        """Large runs are asked for the same records many times."""
+        found: dict[tuple[str, str | None], list[Record]] = {}
+        for record in self.records:
+            for kind in (record["garment"], None):
+                found.setdefault((record["variant"], kind), []).append(record)
+        return found
 
     def groups(self) -> list[tuple[str, str | None]]:
         """Headings and garment kinds to break figures down by: each kind, then all if there are several."""
