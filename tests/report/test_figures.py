@@ -2,6 +2,7 @@ import itertools
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,6 +15,9 @@ from polyfold.report.gallery import gallery
 from polyfold.report.source import open_source
 from polyfold.scoring import succeeded
 from polyfold.statistics import estimate
+
+STYLE = (Path(polyfold.report.__file__).parent / "style.css").read_text("utf-8")
+BLOCKS = [r"^:root", r"prefers-color-scheme: dark\) \{\s*:root"]
 
 values = st.fixed_dictionaries(
     {"miou": st.floats(0, 1), "mppe": st.floats(0, 200), "moved-part": st.floats(0, 400) | st.just(float("nan"))}
@@ -82,11 +86,17 @@ def _variables(css, block):
     return dict(re.findall(r"--([\w-]+): (#[0-9a-f]+)", found))
 
 
-def _luminance(colour):
+def _channels(colour):
     colour = colour if len(colour) == 7 else "#" + "".join(2 * letter for letter in colour[1:])
-    channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    return [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+
+
+def _linear(colour):
+    return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in _channels(colour)]
+
+
+def _luminance(colour):
+    return float(np.dot([0.2126, 0.7152, 0.0722], _linear(colour)))
 
 
 def _contrast(one, other):
@@ -94,18 +104,48 @@ def _contrast(one, other):
     return (light + 0.05) / (dark + 0.05)
 
 
-@pytest.mark.parametrize("block", [r"^:root", r"prefers-color-scheme: dark\) \{\s*:root"])
+@pytest.mark.parametrize("block", BLOCKS)
 def test_text_is_readable_in_light_and_dark(block):
-    css = (Path(polyfold.report.__file__).parent / "style.css").read_text("utf-8")
-    colours = _variables(css, block)
+    colours = _variables(STYLE, block)
     for name in ("ink", "faint", "accent", "good", "bad"):
         assert _contrast(colours[name], colours["paper"]) >= 4.5, name
         if name in ("ink", "faint"):
             assert _contrast(colours[name], colours["wash"]) >= 4.5, name
     assert _contrast(colours["faint"], colours["rest"]) >= 4.5
     for index in range(8):
-        assert _contrast(colours[f"s{index}"], colours["paper"]) >= 4.5, "labels of curves have their colour"
-        assert _contrast(colours[f"s{index}"], colours["on"]) >= 4.5, "so have the bars that text stands in"
+        series = colours[f"s{index}"]
+        assert _contrast(series, colours["paper"]) >= 3.0, "lines and bars"
+        assert _contrast(_mixed(series, colours["ink"], 0.6), colours["paper"]) >= 4.5, "names of curves"
+        assert _contrast(series, colours["on-bright" if index in (1, 2) else "on"]) >= 4.5, "figures in bars"
+
+
+def _mixed(one, other, share):
+    pairs = zip(_channels(one), _channels(other), strict=True)
+    return "#" + "".join(f"{round(255 * (share * a + (1 - share) * b)):02x}" for a, b in pairs)
+
+
+# What remains of linear RGB for protanopes and deuteranopes (Machado, Oliveira and Fernandes, 2009).
+SIGHT = {
+    "usual": np.eye(3),
+    "protanope": [[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]],
+    "deuteranope": [[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]],
+}
+
+
+@pytest.mark.parametrize("sight", SIGHT)
+@pytest.mark.parametrize("block", BLOCKS)
+def test_series_can_be_told_apart_without_seeing_red_or_green(block, sight):
+    colours = _variables(STYLE, block)
+    seen = np.array([_lab(colours[f"s{index}"], SIGHT[sight]) for index in range(8)])
+    distances = [np.linalg.norm(one - other) for one, other in itertools.combinations(seen, 2)]
+    assert min(distances) >= 15.0
+
+
+def _lab(colour, sight):
+    linear = np.clip(np.asarray(sight) @ _linear(colour), 0, 1)
+    matrix = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+    x, y, z = np.cbrt(np.maximum(matrix @ linear / matrix.sum(axis=1), 0.009))
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
 
 
 def test_the_gallery_keeps_what_stands_out_when_space_is_short(full_run):
