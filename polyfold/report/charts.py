@@ -18,8 +18,9 @@ __all__ = ["Part", "bar", "curve_panel", "dot", "percent_axis"]
 COLOURS = 8
 """Colours of series in the style sheet; further series repeat them with another dash."""
 
-WIDTH, HEIGHT = 340, 236
-LEFT, RIGHT, TOP, BOTTOM = 30, 92, 10, 30
+WIDTH, HEIGHT = 352, 236
+LEFT, RIGHT, TOP, BOTTOM = 30, 104, 10, 30
+LONGEST_NAME = 12
 LABEL_STEP = 14.0
 TICKS = (0, 25, 50, 75, 100)
 DASHES = ("", "6 3", "2 3", "8 3 2 3", "1 4")
@@ -177,7 +178,7 @@ def _labels(drawn: Sequence[tuple[int, str, Curve]]) -> list[Markup]:
             tx=end + 12,
             ty=at + 4,
             full=name,
-            short=name if len(name) <= 13 else name[:12] + "…",
+            short=name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…",
         )
         for (index, name, curve), at in zip(order, places, strict=True)
     ]

@@ -70,7 +70,7 @@ def _header(name: str, label: bool) -> Markup:
 
 def _label(cell: str, index: int, fresh: bool) -> Markup:
     dimmed = index == 0 and not fresh
-    return Markup('<td class="label{}">{}</td>').format(" again" if dimmed else "", cell)
+    return Markup('<td class="label{}" title="{}">{}</td>').format(" again" if dimmed else "", cell, cell)
 
 
 def _value(cell: str, difference: bool) -> Markup:
