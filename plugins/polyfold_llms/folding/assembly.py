@@ -12,14 +12,14 @@ from polyfold_llms.folding.lookahead import (
     SEAMS,
     SHAPES,
     SPANS,
-    clause_ends,
     described,
     is_centre,
     keeps_manner,
     side_before_side,
+    singled_out,
 )
+from polyfold_llms.folding.ordering import OrderWords
 from polyfold_llms.folding.phrases import NounPhrase, noun_phrase, starts_noun_phrase
-from polyfold_llms.folding.smallwords import SmallWords
 from polyfold_llms.folding.tokens import Token
 
 __all__ = ["frames_of"]
@@ -30,7 +30,7 @@ def frames_of(tokens: Sequence[Token]) -> Request:
     return _Assembler(tokens).run()
 
 
-class _Assembler(SmallWords):
+class _Assembler(OrderWords):
     """Walks over the tokens once; ``role`` is what the next noun phrase will be."""
 
     def __init__(self, tokens: Sequence[Token]) -> None:
@@ -48,8 +48,10 @@ class _Assembler(SmallWords):
         self.laying = False
         self.grasped = False
         self.target_last = False
+        self.contrasted = False
         self._named_last = False
         self._line_last = False
+        self._lead_last = False
         self.sentence_start = 0
         self.skip_to = 0
         self.garments: list[str] = []
@@ -89,11 +91,10 @@ class _Assembler(SmallWords):
                 self.target_last = was_target
                 self._line_last = bool(self.frame.axes) and self.frame.axes[-1] is phrase and phrase.noun in LINES
                 self.joined = False
-                self._named_last = True
+                self._named_last, self._lead_last = True, self.frame.leads is phrase
                 continue
             getattr(self, f"_on_{token.category}")(token, at)
-            self._named_last = False
-            self._line_last = False
+            self._named_last = self._line_last = self._lead_last = False
             self.comma = token.is_("join", "comma")
             self.joined = token.is_("join") or (self.joined and token.category in ("neg", "quant"))
             at += 1
@@ -112,7 +113,7 @@ class _Assembler(SmallWords):
             self.order = order
         self.frame = Frame()
         self.role, self.purpose, self.spanning, self.shaping = "moving", False, False, False
-        self.spanning_from = False
+        self.spanning_from = self.contrasted = False
 
     def _on_stop(self, token: Token, at: int) -> None:
         self._close("sentence")
@@ -122,69 +123,12 @@ class _Assembler(SmallWords):
         """``half the towel``, with a missing letter."""
         return at + 1 < len(self.tokens) and self.tokens[at + 1].category in ("garment", "pronoun", "goal")
 
-    def _comes_earlier(self, at: int) -> bool:
-        """``..., but fold the sleeves in first``."""
-        ends = clause_ends(self.tokens, at + 1) and not self._named_last
-        return ends and bool(self.frame.verbs and self.done)
-
-    def _on_seq(self, token: Token, at: int) -> None:
-        at_start = self.frame.empty and len(self.done) == self.sentence_start
-        if token.value == "then":
-            self._close()
-        elif (
-            token.value == "first"
-            and clause_ends(self.tokens, at + 1)
-            and self.frame.verbs
-            and self.done
-            and not self._named_last
-        ):
-            self.order = "earlier"
-        elif token.value == "first":
-            if self.purpose and self.frame.moving and not self.frame.verbs:
-                self.frame.leads = self.frame.moving.pop()
-                self.purpose = False
-            elif self.frame.moving and clause_ends(self.tokens, at + 1):
-                self.frame.leads = self.frame.moving[-1] if self.frame.moving[-1].names_part else None
-                if self.frame.elliptical and self.frame.leads is not None and not self.frame.placed and self.done:
-                    self.done[-1][1].leads = self.frame.leads
-                    self.frame = Frame()
-        elif token.value == "start":
-            self.role = "leads"
-        elif token.value == "after" and not (
-            starts_noun_phrase(self.tokens, at + 1) or (at + 1 < len(self.tokens) and self.tokens[at + 1].is_("verb"))
-        ):
-            pass
-        elif token.value == "after" and not at_start:
-            self._close("earlier")
-        elif token.value == "before" and at_start:
-            self._close("later")
-        elif token.value == "before":
-            self._close()
-        elif token.value == "butfirst":
-            self._close("earlier")
-
-    def _ordinal(self, at: int) -> bool:
-        """``second`` is a quantity only before a part: ``the second sleeve``."""
-        token = self.tokens[at]
-        if token.text == "second" or token.text == "third":
-            following = self.tokens[at + 1] if at + 1 < len(self.tokens) else None
-            if (
-                token.text == "third"
-                and self.frame.empty
-                and (following is None or following.category in ("join", "verb"))
-            ):
-                self._close()
-                return True
-            return token.text == "second" and (
-                following is None or following.category not in ("noun", "side", "pronoun", "garment")
-            )
-        return False
-
     # Verbs -----------------------------------------------------------------------------------------------------------
 
     def _on_verb(self, token: Token, at: int) -> None:
         value = token.value
-        if token.form == "ing" and self.frame.leads is not None and self._named_last and not self.frame.specific:
+        begun = self.frame.leads is not None and not self.frame.specific
+        if token.form == "ing" and begun and self._lead_last:
             first, self.frame.leads = self.frame.leads, None
             self._close()
             self.frame.moving.append(first)
@@ -197,6 +141,8 @@ class _Assembler(SmallWords):
             return
         if token.text.startswith(("slant", "angl", "slop", "tilt", "skew", "inclin")):
             self.frame.manners.append("slanted")
+        if value == "bad hang" and self.purpose and self.frame.specific:
+            return
         if value.startswith("bad"):
             self.frame.refused.append(token.text)
             return
@@ -226,7 +172,7 @@ class _Assembler(SmallWords):
                 self._close()
         self.shaping = value == "make"
         self.laying = token.text.startswith(LAYING)
-        if value == "halve":
+        if value == "halve" and not (self.purpose and self.frame.specific):
             self.frame.fractions.append("half")
         if value == "quarter":
             self.frame.fractions.append("quarter")
@@ -244,7 +190,7 @@ class _Assembler(SmallWords):
         )
         if explains:
             self.purpose = True
-        complete = frame.specific and frame.placed and token.form == "base" and token.value in ("fold", "move")
+        complete = frame.specific and frame.placed and token.form == "base" and token.value in ("fold", "move", "turn")
         if self.purpose and self.joined and not self.comma and complete:
             return True
         if self.purpose or not (frame.verbs or frame.moving or frame.placed or frame.fractions):
@@ -304,7 +250,10 @@ class _Assembler(SmallWords):
             frame.restated.append(phrase)
             self.purpose = True
             return
-        if self.grasped and phrase.names_part and phrase.noun not in ("body", "centre", "midline", *LINES):
+        if self.grasped and phrase.pronoun and not (phrase.sides or phrase.noun or phrase.quantity == "other"):
+            frame.restated.append(phrase)
+            return
+        if self.grasped and phrase.names_part and phrase.noun not in ("body", "centre", "midline", *SHAPES, *LINES):
             frame.moving, self.grasped = [phrase], False
             return
         if phrase.noun in ("body", "centre", "midline") and frame.moving and not frame.targets:
@@ -326,6 +275,8 @@ class _Assembler(SmallWords):
             frame.axes.append(phrase)
         elif (self.purpose and frame.specific) or (frame.negated and frame.moving and phrase.pronoun == "it"):
             frame.restated.append(phrase)
+            if phrase.sides and frame.leads is None and singled_out(frame.moving[0], phrase):
+                frame.leads = phrase
         elif self._opens_ellipsis(phrase) and not subject_of_meet:
             aside = self.comma
             self._close()
@@ -336,7 +287,7 @@ class _Assembler(SmallWords):
 
     def _restates(self, phrase: NounPhrase) -> bool:
         """``..., its tip toward the hem``: a detail of the part that moves already."""
-        nouns = {p.noun for p in self.frame.moving}
+        nouns = {p.noun for p in (*self.frame.moving, self.frame.leads) if p is not None}
         bare = not (phrase.sides or phrase.quantity or phrase.number)
         tip = "sleeve" in nouns and phrase.noun in ("cuff", "tip", "edge") and not phrase.sides
         tip |= phrase.noun == "tip" and bare and self.frame.specific
@@ -363,6 +314,8 @@ class _Assembler(SmallWords):
                 self.frame.directions.append("over")
         elif value == "to" and (follows or described(self.tokens, at)):
             self.role = "axis" if self.role == "axis" or self._inside_axis() else "target"
+        elif value == "to" and self._infinitive(at):
+            self.purpose = True
         elif value in ("along", "down"):
             if (follows or described(self.tokens, at)) and self.role != "target":
                 self.role = "target" if self.laying and token.text in ("along", "at") else "axis"
@@ -392,6 +345,11 @@ class _Assembler(SmallWords):
             self.frame.directions.append("in")
         elif value == "in":
             self.role = "axis"
+
+    def _infinitive(self, at: int) -> bool:
+        """``bring the bottom up to the top to halve it``: what a complete clause is done for."""
+        verb = at + 1 < len(self.tokens) and self.tokens[at + 1].is_("verb")
+        return verb and self.tokens[at].text == "to" and self.frame.specific and self.frame.placed
 
     def _on_into(self, at: int) -> None:
         """``into the middle`` is a place, ``into a triangle`` a shape."""
@@ -431,7 +389,9 @@ class _Assembler(SmallWords):
         self.frame.unknown.append(token.text)
 
     def _on_frac(self, token: Token, at: int) -> None:
-        if self.joined and (self.frame.fractions or (self.frame.specific and self.frame.placed)) and not self.purpose:
+        complete = self.frame.specific and self.frame.placed
+        explained = self.purpose and not (complete and self.frame.fractions)
+        if self.joined and (self.frame.fractions or complete) and not explained:
             self._close()
         self.frame.fractions.append(token.value)
 

@@ -45,7 +45,7 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
     if moving and moving[0].what in MIDDLE:
         raise NotUnderstoodError("the middle can't be moved; name an edge, a corner or a part")
     if frame.leads is not None:
-        moving = _led(moving, parts_of(frame.leads, garment, "moving", context))
+        moving = _led(moving, frame.leads, garment, context)
     folds: list[Fold] = []
     said = frame.verbs or frame.placed or frame.fractions or frame.goals or frame.same or previous
     if moving and not said and {part.what for part in moving} != {"sleeve"}:
@@ -137,9 +137,16 @@ def _sideless(phrases: list[NounPhrase]) -> list[NounPhrase]:
     return [replace(phrase, sides=()) for phrase in phrases]
 
 
-def _led(moving: list[Part], first: list[Part]) -> list[Part]:
-    names = {part.which for part in first}
-    return sorted(moving, key=lambda part: part.which not in names)
+def _led(moving: list[Part], leads: NounPhrase, garment: Garment, context: NounPhrase | None) -> list[Part]:
+    """The parts in the order that the clause asks for: *the two left corners, the bottom one first*."""
+    if leads.noun in (None, "corner") and leads.sides and all(part.what == "corner" for part in moving):
+        ranks = [next((i for i, g in enumerate(leads.sides) if g <= {*part.which.split("_")}), 9) for part in moving]
+    else:
+        names = [part.which for part in parts_of(leads, garment, "moving", context)]
+        ranks = [names.index(part.which) if part.which in names else 9 for part in moving]
+    if len(moving) == 4 and sorted(ranks) == [0, 9, 9, 9]:
+        return moving[ranks.index(0) :] + moving[: ranks.index(0)]
+    return [part for _, part in sorted(zip(ranks, moving, strict=True), key=lambda ranked: ranked[0])]
 
 
 def _fold_parts(moving: list[Part], clause: Clause, garment: Garment) -> list[Fold]:

@@ -19,7 +19,8 @@ def _as_goal(frame: Frame) -> Frame:
     """*Triangle first*: a shape without a verb is what is to be made."""
     if frame.verbs or frame.fractions or not any(p.noun == "triangle" for p in frame.moving):
         return frame
-    return replace(frame, moving=[], leads=None, goals=[*frame.goals, "triangle"])
+    rest = [phrase for phrase in frame.moving if phrase.noun != "triangle"]
+    return replace(frame, moving=rest, leads=frame.leads if rest else None, goals=[*frame.goals, "triangle"])
 
 
 def _merged(frames: list[Frame]) -> list[Frame]:
@@ -78,7 +79,7 @@ def _forward(frames: list[Frame]) -> list[Frame]:
     filled = list(frames)
     for index in range(len(frames) - 2, -1, -1):
         frame, following = filled[index], filled[index + 1]
-        said = frame.placed or frame.fractions or frame.goals or frame.same or frame.verbs
+        said = frame.placed or frame.fractions or frame.goals or frame.same or (frame.verbs and following.verbs)
         bare = all(p.noun is None and p.pronoun is None for p in frame.moving)
         if said or not frame.specific or not following.specific or not following.placed:
             continue

@@ -19,13 +19,14 @@ __all__ = [
     "keeps_manner",
     "order_list",
     "side_before_side",
+    "singled_out",
     "verb_ahead",
 ]
 
 SHAPES = ("triangle", "result")
 """Nouns that name a shape after *into* and *make*."""
 
-LAYING = ("lay", "lie", "lying", "laid", "rest", "put", "plac", "set", "align")
+LAYING = ("lay", "lie", "lying", "laid", "rest", "put", "plac", "set", "align", "point", "aim", "land", "stop")
 """Beginnings of verbs after which *along* and *at* tell where something goes, not where the crease runs."""
 
 SPANS = (
@@ -89,22 +90,58 @@ def is_centre(tokens: Sequence[Token], at: int) -> bool:
 
 
 def order_list(tokens: Sequence[Token], at: int, last: NounPhrase | None) -> tuple[NounPhrase, int] | None:
-    """``both sleeves in, first the right and then the left``: the order of what was named together."""
-    if last is None or last.sides or not (last.plural or last.quantity in ("both", "all", "each")):
+    """``both sleeves in, first the right and then the left``: the order of what was named together, and where it ends.
+
+    The phrase returned has one set of sides per part, in the order in which they are done.
+    """
+    if last is None or not (last.plural or last.number or last.quantity in ("both", "all", "each")):
         return None
-    end = at
-    sides = []
-    while end < len(tokens) and tokens[end].category != "stop":
+    groups: list[set[str]] = []
+    end, apart = at, True
+    while end < len(tokens):
         token = tokens[end]
         if token.category == "side":
-            sides.append(token.value)
-        elif not (token.category in ("seq", "join", "pronoun", "quant") or token.is_("noun", last.noun or "")):
+            if apart:
+                groups.append(set())
+            groups[-1].add(token.value)
+            apart = False
+        elif _names_again(token, last) or _goes_on(token, len(groups) == _members(last)):
+            apart = True
+        else:
             break
         end += 1
-        if len(sides) == 2:
-            break
-    if len(sides) != 2 or sides[1] != OPPOSITE[sides[0]]:
+    while end < len(tokens) and tokens[end].is_("seq", "first", "then") and clause_ends(tokens, end + 1):
+        end += 1
+    if not _orders(groups, last) or not clause_ends(tokens, end):
         return None
-    while end < len(tokens) and (tokens[end].category in ("pronoun",) or tokens[end].is_("noun", last.noun or "")):
-        end += 1
-    return NounPhrase(sides=(frozenset({sides[0]}),)), end
+    return NounPhrase(sides=tuple(frozenset(group) for group in groups)), end
+
+
+def _members(last: NounPhrase) -> int:
+    """How many parts of those named together an order must list."""
+    return 4 if last.noun == "corner" and not last.sides and last.number != 2 else 2
+
+
+def _names_again(token: Token, last: NounPhrase) -> bool:
+    return token.category in ("pronoun", "quant") or token.is_("noun", last.noun or "")
+
+
+def _goes_on(token: Token, complete: bool) -> bool:
+    return token.category in ("seq", "join") and not (complete and token.value != "after")
+
+
+def _orders(groups: Sequence[set[str]], last: NounPhrase) -> bool:
+    """Whether the sides tell the members of what was named apart, each once."""
+    if _members(last) == 4:
+        return len(groups) == 4 and len({frozenset(group) for group in groups}) == 4
+    if len(groups) != 2 or len(last.sides) > 1:
+        return False
+    known = set(last.sides[0]) if last.sides else set()
+    first, second = (group - known for group in groups)
+    return len(first) == len(second) == 1 and OPPOSITE[next(iter(first))] in second
+
+
+def singled_out(several: NounPhrase, phrase: NounPhrase) -> bool:
+    """``put the legs together by taking the right one over``: one of several that were named together."""
+    many = several.plural or several.quantity in ("both", "all", "each") or len(several.sides) > 1
+    return many and len(phrase.sides) == 1 and not phrase.plural and phrase.noun in (None, several.noun)

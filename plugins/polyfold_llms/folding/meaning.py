@@ -145,6 +145,7 @@ def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> No
         found = folds_of_frame(frame, garment, source, wanted)
         if (
             frame.aside
+            and not frame.again
             and garment.folds
             and [(f.action, f.part) for f in found] == [(f.action, f.part) for f in garment.folds[-1:]]
         ):

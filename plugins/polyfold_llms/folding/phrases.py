@@ -148,7 +148,7 @@ def _list_goes_on(found: NounPhrase, tokens: Sequence[Token], at: int) -> bool:
     if tokens[at].value == "or":
         return False
     if not found.noun:
-        return _side_follows(tokens, at)
+        return _side_follows(tokens, at) and not _another_axis(tokens, at)
     return found.noun == "corner" and found.plural and at + 1 < len(tokens) and tokens[at + 1].category == "side"
 
 
@@ -162,6 +162,18 @@ def _side_follows(tokens: Sequence[Token], at: int) -> bool:
     while at < len(tokens) and tokens[at].category in ("side", "join"):
         at += 1
     return at < len(tokens) and tokens[at].category == "noun"
+
+
+def _another_axis(tokens: Sequence[Token], at: int) -> bool:
+    """``left over right, bottom third up``: a side and a share that lie on different axes are no list."""
+    ahead = at
+    while tokens[ahead].category in ("side", "join"):
+        ahead += 1
+    sides = {token.value for token in tokens[at - 1 : ahead] if token.category == "side"}
+    listed = any(token.is_("join", "and") for token in tokens[at:ahead])
+    crossed = bool(sides & {"left", "right"}) and bool(sides & {"top", "bottom"})
+    single = tokens[at - 1].category == "side" and (at < 2 or tokens[at - 2].category != "side")
+    return crossed and single and (not listed or tokens[ahead].value in ("third", "quarter", "half"))
 
 
 def _attachments(found: NounPhrase, tokens: Sequence[Token], at: int) -> tuple[NounPhrase, int]:

@@ -84,16 +84,12 @@ class SmallWords:
         elif led is not None:
             self.frame.leads, self.skip_to = led
         elif token.value == "colon" and self.frame.specific and (self.frame.verbs or self.frame.placed):
-            self._close()
+            self._close("sentence")
         elif token.value == "colon":
             split = set(self.frame.fractions) & {"third", "quarter"}
             if split:
-                self._close()
+                self._close("sentence")
             self.purpose = bool(self.frame.fractions or self.frame.goals or self.frame.axes)
-
-    def _on_but(self, token: Token, at: int) -> None:
-        if not self.frame.empty:
-            self._close()
 
     def _on_loose(self, token: Token, at: int) -> None:
         if token.text in ("wearer",):

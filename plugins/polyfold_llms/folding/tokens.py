@@ -87,6 +87,34 @@ HANDS = re.compile(
     r"\b(?:with|using) (?:one|both|two|your|the|its) (?:robot |robotic )?(?:arm|hand|gripper)s?(?: on)?\b"
 )
 QUARTER_WAY = re.compile(r"\b(?:a |one )?quarter of the way(?: in| up| down| across)?(?: from the \w+)?\b")
+ADVERB = re.compile(
+    r"(?<=[a-z] )(?<!the )(?<!top )(?<!bottom )(?<!upper )(?<!lower )(?<!left )(?<!and )(?<!then )(?<!over )(?<!onto )"
+    r"(?<!on )(?<!to )(?<!from )(?<!first )(?<!with )(?<!its )(?<!far )(?<!fold )(?<!bring )(?<!or )"
+    r"right (?=(?:in|on|onto|at|over|along|to|into|where|across|up|down) (?:the|its|to)\b)"
+    r"|(?<=, )right (?=(?:at|where|along) (?:the|its)\b)"
+)
+"""*Right* that means *just*: *right at the seam*, *lands right in the centre*."""
+STATE = re.compile(
+    r"\b(?:once|when|after|now that|as soon as) (?:you (?:have|get|got)|it is|it has become|there is|that is) "
+    r"(?:a|an|the|your|that|this) (?!left|right|top|bottom|upper|lower)[^,.;:]*,"
+)
+"""A result reached before the next clause: *once you have the triangle, ...*."""
+ROUND = re.compile(
+    r",?\s*(?:and )?(?:then )?(?:(?:going|working|moving|proceeding|continuing) )(?:your way )?"
+    r"(?:(?:a)?round )?(?:the (?:cloth|square|napkin|corners) )?(?:in )?(?:a )?"
+    r"(?:(?:counter|anti)?-?clockwise|(?:a)?round)(?: (?:direction|order|around|round))?"
+    r"(?= (from)\b| starting\b|[,.;]|$)"
+    r"(?: from)?"
+)
+"""*Going round clockwise from the bottom left*: corners are told one after the other in that order anyway."""
+LINES_THAT_CROSS = r"(?:the |its |both |two |these )*(?:diagonals|(?:middle|centre|center|mid) ?lines|midlines|axes)"
+CROSSING = re.compile(
+    rf"(?:(?:point|place|spot|position) )?(?:where|at which|in which) {LINES_THAT_CROSS} "
+    r"(?:would |will )?(?:cross|meet|intersect)(?: each other)?\b"
+    rf"|(?:intersection|crossing|meeting)(?: point)? of {LINES_THAT_CROSS}"
+)
+"""The centre, told by what crosses there."""
+NEXT_PART = re.compile(r"\b(then|next|now),? (?:go|turn|move|switch)(?: over| on)? to (?=(?:the|its) )")
 TIMES = re.compile(r"\b(\d+|[a-z]+)\s+(?:more |separate |whole )?times\b(?! smaller)")
 
 
@@ -117,6 +145,11 @@ def read(text: str) -> Sentence:
     """Tag an instruction."""
     plain = _plain(text)
     plain = SIMILE.sub(_simile, plain)
+    plain = ADVERB.sub("", plain)
+    plain = CROSSING.sub("centre", plain)
+    plain = STATE.sub(" then ", plain)
+    plain = ROUND.sub(lambda found: ", starting with" if found.group(1) else "", plain)
+    plain = NEXT_PART.sub(r"\1 take ", plain)
     plain = LISTED.sub(". ", plain)
     plain = COUNTED.sub(_count("stepcount"), plain)
     plain = PLURAL_FOLDS.sub(_count("stepcount", keep=2), plain)
@@ -174,7 +207,7 @@ def _count(name: str, keep: int = 0):
 
 def _simile(match: re.Match[str]) -> str:
     known = next((phrase for word, phrase in SIMILES.items() if word in match.group(0)), None)
-    cut = re.search(r"\b(?:and|then|with)\b.*", match.group(0))
+    cut = re.search(r"\b(?:and|then|with|by|so|from|until|along)\b.*", match.group(0))
     return f"{known or ''} {cut.group(0) if cut else ''}"
 
 

@@ -72,6 +72,8 @@ def _diagonal(clause: Clause, garment: Garment) -> Fold:
     first = frame_lead(clause, garment)
     if first in OPPOSITE_CORNER:
         return Fold("corner", first, OPPOSITE_CORNER[first])
+    if creases and OPPOSITE_CORNER[creases[0]] != creases[-1]:
+        raise NotUnderstoodError("a diagonal runs between opposite corners; name those two")
     if creases:
         corner = next(c for c in ("bottom_left", "bottom_right") if c not in creases)
     else:
