@@ -223,7 +223,10 @@ class GarmentKind(Protocol):
         """The polygon template."""
 
     def generate(self, seed: int, edge_length: float = 0.0125) -> Garment:
-        """The seeded garment, meshed at about ``edge_length`` [m]. The same seed gives the same garment."""
+        """The seeded garment, meshed at about ``edge_length`` [m]; the default is the kind's own.
+
+        The same seed gives the same garment at every edge length.
+        """
 
 
 @runtime_checkable

@@ -57,7 +57,7 @@ def garment(
     mesh: str | Path | None = None,
     keypoints: str | Path | None = None,
     size: float | None = None,
-    edge_length: float = 0.0125,
+    edge_length: float | None = None,
     experiment: Experiment | None = None,
 ) -> Garment:
     """A garment of a kind: seeded, from a mesh file, or the twin of a real one.
@@ -71,7 +71,7 @@ def garment(
         mesh: OBJ file; ``keypoints`` must be given too.
         keypoints: JSON file, keypoint name -> vertex index of the mesh.
         size: longest side of the real garment's bounding box [m]; by default typical of the kind.
-        edge_length: mesh size [m].
+        edge_length: mesh size [m]; by default what suits the kind.
         experiment: whose grounding finds the keypoints of a real garment.
 
     Raises:
@@ -89,7 +89,7 @@ def garment(
     if not given:
         if size is not None:
             raise GarmentError("the size of a seeded garment comes from its seed; give a mask, outline, image or mesh")
-        return generator.generate(seed, edge_length)
+        return generator.generate(seed) if edge_length is None else generator.generate(seed, edge_length)
     if mesh is not None:
         return _from_mesh(kind, mesh, keypoints, size, edge_length)
     from polyfold.garments import twin_from_outline
@@ -99,7 +99,7 @@ def garment(
 
 
 def _from_mesh(
-    kind: str, mesh: str | Path, keypoints: str | Path | None, size: float | None, edge_length: float
+    kind: str, mesh: str | Path, keypoints: str | Path | None, size: float | None, edge_length: float | None
 ) -> Garment:
     from polyfold.garments import load_obj
 

@@ -27,7 +27,7 @@ class Square:
 
         return square_template()
 
-    def generate(self, seed: int, edge_length: float = 0.0125) -> Garment:
+    def generate(self, seed: int, edge_length: float = 0.01) -> Garment:
         """The seeded square, meshed at about ``edge_length`` [m]."""
         rng = np.random.default_rng([seed, 1])
         side = rng.uniform(0.25, 0.45)

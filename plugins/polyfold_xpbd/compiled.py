@@ -3,8 +3,7 @@
 All of it is in one module because numba's cache notices a change only in the file of the function that it stores.
 
 Self-contact is that of oriented discs: a particle keeps others at one thickness along their common normal. A pair
-remembers on which side of each other's sheet it met, so that a layer that was pushed through another is pushed back
-instead of out on the wrong side.
+remembers on which side it met, so that a layer pushed through another is pushed back, not out on the wrong side.
 """
 
 from __future__ import annotations
@@ -16,17 +15,17 @@ __all__ = ["DIVERGED", "RUNNING", "SETTLED", "advance", "vertex_normals"]
 
 compiled = njit(cache=True, fastmath=True, error_model="numpy")
 careful = njit(cache=True, error_model="numpy")
-"""Without fast maths, which would assume that nothing is ever NaN."""
+"""Without fast maths, which assumes that nothing is NaN."""
 
 RUNNING, SETTLED, DIVERGED = 0, 1, 2
 LOOK_EVERY = 5
 """Substeps between looks at who is near whom and which way the sheet faces."""
 LOOK_AFTER = 0.8
-"""Look earlier once the fastest particle may have come this far, in pads: a falling flap must not pass unseen."""
+"""Look earlier once the fastest particle may have come this far, in pads."""
 BEND_EVERY = 2
 """Substeps per bending step: bending is slow against stretching, and stable far beyond this."""
 UPPER_SHARE = 0.85
-"""Share of a push that the upper of two layers takes when the lower one rests on the table."""
+"""Share of a push that the upper of two layers takes when the lower one lies on the table."""
 CLEAR = 0.5
 """How far off a sheet something must be to be on one side of it, in thicknesses."""
 
@@ -335,7 +334,7 @@ def _table(x, previous, mobility, supported, rests, floor, friction):
 
 @compiled
 def _carry(x, grasped, offsets, arm, directions, path, angles, k):
-    """Put the grasped particles where the grippers are: along the path, and turned about the crease's direction."""
+    """Put the grasped particles where the grippers are, turned about the crease's direction."""
     c, s = np.float32(np.cos(angles[k])), np.float32(np.sin(angles[k]))
     for g in range(grasped.shape[0]):
         a = arm[g]
@@ -370,7 +369,7 @@ def _velocities(x, previous, v, inverse_dt):
 
 @compiled
 def _mark_moved(x, listed, moved, limit, everything):
-    """Mark the particles that left the place where they were last listed by more than ``limit``; whether there are."""
+    """Mark the particles farther than ``limit`` from where they were last listed; whether there are any."""
     any_moved = False
     for i in range(x.shape[0]):
         dx, dy, dz = x[i, 0] - listed[i, 0], x[i, 1] - listed[i, 1], x[i, 2] - listed[i, 2]
@@ -387,7 +386,7 @@ def advance(
     excluded_start, excluded, start, pj, side, pair_normal, old_start, old_j, old_side, clock, supported, rests,
     grasped, offsets, arm, directions, path, angles, tied, anchors, lengths, first, last, settings, damping, rest_speed,
 ):  # fmt: skip
-    """Run substeps ``first`` to ``last`` in place; stop early once slow (``rest_speed`` > 0) for ten substeps.
+    """Run substeps ``first`` to ``last`` in place; stop once slow (``rest_speed`` > 0) for ten substeps.
 
     Args (beyond the model's arrays and the state's buffers):
         clock: substeps since the stage began, for how many the cloth has been slow, and how far the fastest particle

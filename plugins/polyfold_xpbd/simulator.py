@@ -35,7 +35,7 @@ class XpbdSimulator:
         rotation_deg: float = Field(20.0, ge=0.0, le=180.0, description="the pose is turned by up to this angle [deg]")
         fill: float = Field(0.8, gt=0.1, le=1.0, description="share of the image that the garment's circle fills")
         thickness: float = Field(0.0035, gt=0.001, le=0.02, description="distance of touching layers [m]")
-        bending_length: float = Field(0.013, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]")
+        bending_length: float = Field(0.010, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]")
         table_friction: float = Field(0.8, ge=0.0, le=2.0, description="Coulomb friction, cloth on table")
         cloth_friction: float = Field(0.6, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
 

@@ -60,7 +60,8 @@ class Printer:
             f"line ({line.start[0]:.0f}, {line.start[1]:.0f}) -> ({line.end[0]:.0f}, {line.end[1]:.0f})" if line else ""
         )
         times = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
-        self._flush(f"  fold {step.index + 1}{' (again)' if step.retry else ''}: {where}, {step.action.arms} arm(s); {times}")
+        number = f"{step.index + 1} (again)" if step.retry else f"{step.index + 1}"
+        self._flush(f"  fold {number}: {where}, {step.action.arms} arm(s); {times}")
 
     def _flush(self, line: str) -> None:
         print(line)

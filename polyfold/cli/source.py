@@ -17,9 +17,7 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("--garment", default="tshirt", metavar="KIND", help="kind of garment (default: tshirt)")
     parser.add_argument("--seed", type=int, default=0, help="which garment and how it lies (default: 0)")
-    parser.add_argument(
-        "--edge-length", type=float, default=0.0125, metavar="METRES", help="mesh size (default: 0.0125)"
-    )
+    parser.add_argument("--edge-length", type=float, metavar="METRES", help="mesh size (default: by kind)")
     twin = parser.add_argument_group("a real garment instead of a seeded one")
     source = twin.add_mutually_exclusive_group()
     source.add_argument("--mask", type=Path, metavar="PNG", help="mask of the garment: a simulated twin is built")

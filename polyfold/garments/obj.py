@@ -36,7 +36,7 @@ def load_obj(
     keypoints_json: str | Path,
     kind: str,
     size_m: float | None = None,
-    edge_length: float = 0.0125,
+    edge_length: float | None = None,
     *,
     pattern: Pattern | None = None,
 ) -> Garment:
@@ -52,7 +52,7 @@ def load_obj(
             all names of the kind, left and right as a viewer in front of it sees them.
         kind: registered garment kind.
         size_m: longest side of the flat garment's bounding box [m]; by default the file is in metres.
-        edge_length: mesh size [m].
+        edge_length: mesh size [m]; by default 10 mm for one layer, 12.5 mm for two.
         pattern: how the garment is sewn, by default the kind's own.
 
     Raises:

@@ -28,12 +28,16 @@ FAR = 0.15  # how far a keypoint may lie from the outline, as a share of the gar
 SMALLEST, LARGEST = 0.05, 3.0  # plausible longest sides [m]
 
 
+ONE_LAYER_EDGE, TWO_LAYER_EDGE = 0.010, 0.0125
+"""Mesh sizes [m]: a towel is smaller than a shirt and has half the particles."""
+
+
 def twin_from_outline(
     outline: ArrayLike,
     kind: str,
     keypoints: Mapping[str, ArrayLike],
     size_m: float | None = None,
-    edge_length: float = 0.0125,
+    edge_length: float | None = None,
     *,
     pattern: Pattern | None = None,
     name: str | None = None,
@@ -47,7 +51,7 @@ def twin_from_outline(
         kind: registered garment kind.
         keypoints: keypoint name -> pixel, shape (2,), all of the kind's names; they are moved onto the outline.
         size_m: longest side of the upright garment's bounding box [m]; by default one that is typical of the kind.
-        edge_length: mesh size [m].
+        edge_length: mesh size [m]; by default 10 mm for one layer, 12.5 mm for two.
         pattern: how the garment is sewn, by default the kind's own.
         name: the garment's name, by default ``<kind>-twin``.
 
@@ -58,6 +62,8 @@ def twin_from_outline(
     size = pattern.size if size_m is None else float(size_m)
     if not SMALLEST <= size <= LARGEST:
         raise GarmentError(f"a garment of {size} m is not plausible; give its longest side in metres")
+    if edge_length is None:
+        edge_length = ONE_LAYER_EDGE if pattern.layers == 1 else TWO_LAYER_EDGE
     flip = np.array([1.0, -1.0])
     corners = _complete(keypoints, pattern) * flip
     ring = repair_outline(np.asarray(outline, float) * flip)

@@ -10,6 +10,7 @@ from polyfold_standard.tshirt import TShirt
 
 from polyfold.garments import name_by_pose
 from polyfold.geometry import rotate
+from polyfold.ideal import LAYER_THICKNESS
 from polyfold.tasks import load_suite
 from polyfold.types import Camera, SimState
 
@@ -22,7 +23,7 @@ def lay(kind, seed=2000, degrees=0.0, edge_length=0.02):
     """A garment and its state, flat on the table."""
     garment = KINDS[kind].generate(seed, edge_length)
     flat = rotate(garment.mesh.vertices, np.radians(degrees))
-    positions = np.column_stack([flat, 0.0025 + 0.005 * garment.mesh.layer])
+    positions = np.column_stack([flat, LAYER_THICKNESS * (0.5 + garment.mesh.layer)])
     camera = Camera.framing(2 * np.hypot(*flat.T).max() / 0.8)
     keypoints = name_by_pose(garment.cyclic, garment.keypoints, positions)
     return garment, SimState(positions, np.zeros_like(positions), keypoints, camera)

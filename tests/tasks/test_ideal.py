@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from laid_flat import KINDS, SUITE, lay
 
 from polyfold.geometry import fill_polygon, iou
-from polyfold.ideal import fidelity, fold_ideally
+from polyfold.ideal import LAYER_THICKNESS, fidelity, fold_ideally
 from polyfold.tasks import fold_lines
 from polyfold.types import FoldLine, SimState
 
@@ -90,7 +90,7 @@ def test_what_was_lowest_of_the_lifted_comes_to_lie_on_top():
     assert (ideal.layer[lifted & front] == 2).all()
     assert (ideal.layer[lifted & back] == 3).all()
     assert (ideal.layer[kept & front] == 1).all()
-    np.testing.assert_allclose(np.diff(np.unique(ideal.positions[:, 2])), 0.005)
+    np.testing.assert_allclose(np.diff(np.unique(ideal.positions[:, 2])), LAYER_THICKNESS)
 
 
 def test_flaps_that_do_not_meet_lie_on_the_same_layer():

@@ -8,6 +8,7 @@ import pytest
 from polyfold import plugins
 from polyfold.benchmark.cloth_measures import crossing_edges, layer_order, strain
 from polyfold.errors import ActionError, SimulationError
+from polyfold.ideal import LAYER_THICKNESS
 from polyfold.types import Action, FoldLine
 
 SEED = 2002
@@ -111,12 +112,14 @@ def test_half_fold_lands_on_the_other_half_without_strain(simulator, garments):
         ("pants", ["leg_outer_left", "waist_left"], ["leg_outer_right", "waist_right"]),
     ],
 )
-def test_two_layered_garments_fold_without_piercing_themselves(simulator, garments, kind, picks, places):
-    simulator.reset(garments[kind], 1)
+def test_two_layered_garments_fold_without_piercing_themselves(simulator, kind, picks, places):
+    # Fine enough to show a crease: how many edges pierce the other layer depends on the mesh.
+    garment = plugins.create("garments", kind).generate(SEED, 0.0155)
+    simulator.reset(garment, 1)
     simulator.execute(fold_over(simulator, picks, places))
     positions = simulator.state().positions
-    assert np.percentile(np.abs(strain(garments[kind].mesh, positions)), 99) < 0.2
-    assert crossing_edges(garments[kind].mesh, positions) < 0.08
+    assert np.percentile(np.abs(strain(garment.mesh, positions)), 99) < 0.2
+    assert crossing_edges(garment.mesh, positions) < 0.06
     rested = simulator.state()
     simulator.wait(0.5)
     assert np.linalg.norm(simulator.state().positions - rested.positions, axis=1).mean() < 0.005
@@ -219,3 +222,7 @@ def test_pick_equal_to_place_leaves_the_cloth_flat(simulator, garments):
     simulator.execute(Action(pick, pick))
     moved = np.linalg.norm(simulator.state().positions - before.positions, axis=1)
     assert moved.mean() < 0.005
+
+
+def test_layers_are_as_thick_as_the_ideal_takes_them_to_be():
+    assert plugins.component_class("simulators", "xpbd").Config().thickness == LAYER_THICKNESS
