@@ -52,6 +52,7 @@ class _Assembler(OrderWords):
         self._named_last = False
         self._line_last = False
         self._lead_last = False
+        self._moving_last = False
         self.sentence_start = 0
         self.skip_to = 0
         self.garments: list[str] = []
@@ -89,6 +90,7 @@ class _Assembler(OrderWords):
                 was_target = self.role == "target"
                 self._add_phrase(phrase, at)
                 self.target_last = was_target
+                self._moving_last = bool(self.frame.moving) and self.frame.moving[-1] is phrase
                 self._line_last = bool(self.frame.axes) and self.frame.axes[-1] is phrase and phrase.noun in LINES
                 self.joined = False
                 self._named_last, self._lead_last = True, self.frame.leads is phrase
@@ -318,7 +320,9 @@ class _Assembler(OrderWords):
             self.purpose = True
         elif value in ("along", "down"):
             if (follows or described(self.tokens, at)) and self.role != "target":
-                self.role = "target" if self.laying and token.text in ("along", "at") else "axis"
+                lies = self.purpose and bool(self.frame.restated) and is_centre(self.tokens, at + 1)
+                placing = (self.laying and token.text in ("along", "at")) or lies
+                self.role = "target" if placing else "axis"
         elif value == "from":
             self.frame.from_source = not self.frame.axes
             if self._line_last or self.frame.verbs == ["crease"]:
@@ -344,7 +348,7 @@ class _Assembler(OrderWords):
         ):
             self.frame.directions.append("in")
         elif value == "in":
-            self.role = "axis"
+            self.role = "target" if self.purpose and self.frame.restated else "axis"
 
     def _infinitive(self, at: int) -> bool:
         """``bring the bottom up to the top to halve it``: what a complete clause is done for."""
@@ -377,6 +381,8 @@ class _Assembler(OrderWords):
         return not self.frame.moving
 
     def _inside_axis(self) -> bool:
+        if self._moving_last and self.frame.axes:
+            return False
         return self.spanning_from or (
             bool(self.frame.axes) and self.frame.axes[0].noun in ("crease", "diagonal", "armpit")
         )

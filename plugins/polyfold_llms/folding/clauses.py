@@ -83,8 +83,10 @@ def _paired(frame: Frame) -> Frame:
 
 
 def _distinct(phrases: list[NounPhrase]) -> list[NounPhrase]:
-    """Without a second, barer mention: *starting at the bottom left, fold that corner*."""
+    """Without a second, barer mention: *starting at the bottom left, fold that corner*, *two corners, X and Y*."""
     sided = [phrase for phrase in phrases if phrase.sides]
+    if len(sided) == len(phrases) - 1 and phrases[0].number == sum(len(p.sides) for p in sided) > 1:
+        return [replace(phrase, noun=phrase.noun or phrases[0].noun) for phrase in sided]
     return [phrase for phrase in phrases if not (sided and _repeats(phrase))]
 
 

@@ -50,10 +50,18 @@ def _with_previous(previous: Frame, frame: Frame) -> Frame | None:
 def _continues(previous: Frame, frame: Frame) -> bool:
     if not frame.moving and any(p.noun == "leg" for p in previous.moving):
         return False
+    if previous.verbs != ["grasp"] and _meets_in_middle(previous):
+        return False
     pronoun = bool(frame.moving) and all(not p.names_part and not p.garments for p in frame.moving)
     if previous.specific and not (previous.targets or previous.directions or previous.fractions or previous.goals):
         return not frame.specific and (pronoun or not frame.moving) and frame.placed and not frame.fractions
     return False
+
+
+def _meets_in_middle(frame: Frame) -> bool:
+    """*Bring top and bottom together in the middle* says all that it needs to."""
+    meets = set(frame.manners) & {"together", "meetmiddle", "cupboard"} or "meet" in frame.verbs
+    return bool(meets) and ("meetmiddle" in frame.manners or any(p.noun in ("centre", "midline") for p in frame.axes))
 
 
 def _goes_over(previous: Frame, frame: Frame) -> bool:

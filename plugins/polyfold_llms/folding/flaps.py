@@ -8,6 +8,9 @@ from polyfold_llms.folding.frames import Frame
 from polyfold_llms.folding.goals import fold_in_half
 from polyfold_llms.folding.parts import Garment, NotUnderstoodError, Part
 
+PLACES_BESIDE = ("armpit", "armhole", "crotch", "body")
+"""Places that no edge is folded to, neither the opposite edge nor the middle."""
+
 __all__ = ["fold_band", "fold_corner", "fold_corners", "fold_edge", "fold_edges", "fold_sleeve"]
 
 
@@ -17,6 +20,7 @@ __all__ = ["fold_band", "fold_corner", "fold_corners", "fold_edge", "fold_edges"
 def fold_edges(names: list[str], clause: Clause, garment: Garment) -> list[Fold]:
     """Several edges at once: onto each other, or all to the middle."""
     frame = clause.frame
+    _check_places(clause)
     meets = clause.has("together") or "meet" in frame.verbs
     at_middle = meets and any(part.what in MIDDLE for part in clause.axes)
     to_middle = at_middle or clause.toward(*MIDDLE) or clause.has("meetmiddle", "halfway", "cupboard")
@@ -44,12 +48,22 @@ def fold_edges(names: list[str], clause: Clause, garment: Garment) -> list[Fold]
     return [Fold("middle", _definite(name, garment)) for name in names]
 
 
+def _check_places(clause: Clause) -> None:
+    unknown = [phrase for phrase in clause.frame.targets if phrase.noun in PLACES_BESIDE]
+    if unknown:
+        raise NotUnderstoodError(
+            f"I know no fold that ends at “{unknown[0].text}”; name the opposite edge or the middle line"
+        )
+
+
 def _is_legs(frame: Frame) -> bool:
     return any(phrase.noun == "leg" for phrase in frame.moving)
 
 
 def _definite(edge: str, garment: Garment) -> str:
-    if edge in ("any", "long", "short"):
+    if edge in ("long", "short"):
+        raise NotUnderstoodError(f"I can't tell which edges are the {edge} ones; say left and right, or top and bottom")
+    if edge == "any":
         garment.note("The instruction leaves open which edge; I take the left one.")
         return "left"
     return edge
@@ -58,6 +72,7 @@ def _definite(edge: str, garment: Garment) -> str:
 def fold_edge(part: Part, clause: Clause, garment: Garment) -> Fold:
     """One edge: onto the opposite edge or to the middle line."""
     edge = part.which
+    _check_places(clause)
     opposite = any(target == Part("edge", OPPOSITE_EDGE.get(edge, "")) for target in clause.targets)
     if not opposite and not clause.targets:
         opposite = edge in OPPOSITE_EDGE and Part("edge", OPPOSITE_EDGE[edge]) in clause.axes
@@ -187,7 +202,7 @@ def fold_sleeve(part: Part, clause: Clause, garment: Garment) -> Fold:
     other = OPPOSITE_EDGE[side]
     if any(target == Part("sleeve", other) for target in clause.targets):
         return fold_in_half(garment, side)
-    if clause.frame.fractions:
+    if clause.frame.fractions or clause.has("halfway"):
         raise NotUnderstoodError("a sleeve can't be folded in half on its own; it can be folded in onto the body")
     if side in clause.frame.directions or "out" in clause.frame.directions:
         raise NotUnderstoodError(f"folding the {side} sleeve that way would move it off the shirt; fold it inward")

@@ -41,6 +41,7 @@ class Frame:
     context: NounPhrase | None = None
     leads: NounPhrase | None = None
     phrasal: bool = False
+    announces: bool = False
 
     @property
     def empty(self) -> bool:

@@ -8,7 +8,7 @@ from polyfold_llms.folding.assembly import frames_of
 from polyfold_llms.folding.clause import parts_of
 from polyfold_llms.folding.clauses import folds_of_frame
 from polyfold_llms.folding.ellipsis import completed
-from polyfold_llms.folding.folds import Fold
+from polyfold_llms.folding.folds import OPPOSITE_EDGE, Fold
 from polyfold_llms.folding.frames import Frame, Request
 from polyfold_llms.folding.goals import fold_for_goal
 from polyfold_llms.folding.parts import Garment, NotUnderstoodError
@@ -142,14 +142,9 @@ def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> No
             continue
         wanted = steps if not explicit else None
         source = latest if frame.again else previous
+        if latest is not None and _specifies(frame, latest, garment):
+            garment.folds.pop()
         found = folds_of_frame(frame, garment, source, wanted)
-        if (
-            frame.aside
-            and not frame.again
-            and garment.folds
-            and [(f.action, f.part) for f in found] == [(f.action, f.part) for f in garment.folds[-1:]]
-        ):
-            continue
         for fold in found:
             garment.folds.append(fold)
             if len(garment.folds) > MAX_FOLDS + 4:
@@ -165,6 +160,20 @@ def _fold_frames(frames: list[Frame], garment: Garment, steps: int | None) -> No
             garment.folds.append(fold)
 
 
+def _specifies(frame: Frame, latest: Frame, garment: Garment) -> bool:
+    """``legs together, right over left``: an aside that says how the fold before it is meant."""
+    last = garment.folds[-1] if garment.folds else None
+    if not frame.aside or frame.again or last is None or len(frame.moving) != 1:
+        return False
+    probe = replace(garment, folds=garment.folds[:-1], notes=[])
+    found = folds_of_frame(frame, probe, None, None)
+    if len(found) != 1 or found[0].action != last.action:
+        return False
+    open_side = last.action == "half" and not any(phrase.sides for phrase in latest.moving)
+    across = OPPOSITE_EDGE.get(last.part) if open_side else last.part
+    return found[0].part in (last.part, across)
+
+
 def _repeatable(frames: list[Frame]) -> bool:
     """Whether a stated number of folds can mean one clause done so often: *two diagonal folds*."""
     return len(frames) == 1 and not (frames[0].specific or frames[0].targets or frames[0].goals)
@@ -173,6 +182,8 @@ def _repeatable(frames: list[Frame]) -> bool:
 def _describes(frame: Frame, later: list[Frame]) -> bool:
     """Whether the clause only names what the following ones spell out: *like a cupboard: both edges to the middle*."""
     named = set(frame.manners) & {"cupboard", "envelope"} or set(frame.goals) & {"envelope"}
+    if frame.announces:
+        return sum(f.specific and f.placed for f in later) > 1
     return bool(named) and not frame.specific and any(f.specific for f in later[:1])
 
 

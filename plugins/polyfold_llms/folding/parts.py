@@ -35,6 +35,7 @@ PLACES = {
     "result",
     "rest",
     "crease",
+    "edgecentre",
 }
 
 
@@ -107,8 +108,19 @@ def resolve(phrase: NounPhrase, garment: Garment, role: str, context: NounPhrase
         noun = context.noun
     if noun is None and phrase.pronoun == "one" and not phrase.garments:
         noun = _kind_of_last(garment)
+        if noun is None and phrase.sides and len(phrase.sides[0]) == 1:
+            raise NotUnderstoodError(f"it is unclear which part “{phrase.text}” is; name it")
+    if noun == "edgecentre" and role != "axis":
+        raise NotUnderstoodError(
+            f"“{phrase.text}” is no place that I can fold to; name a corner, an edge or the centre of the cloth"
+        )
     if noun in PLACES:
-        return [Part({"crease": "midline"}.get(noun, noun), next(iter(phrase.sides[0])) if phrase.sides else "")]
+        return [
+            Part(
+                {"crease": "midline", "edgecentre": "centre"}.get(noun, noun),
+                next(iter(phrase.sides[0])) if phrase.sides else "",
+            )
+        ]
     if noun is None and not phrase.sides:
         if phrase.quantity in ("other", "opposite") and not phrase.garments:
             noun = _kind_of_last(garment)

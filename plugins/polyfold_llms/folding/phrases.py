@@ -148,7 +148,7 @@ def _list_goes_on(found: NounPhrase, tokens: Sequence[Token], at: int) -> bool:
     if tokens[at].value == "or":
         return False
     if not found.noun:
-        return _side_follows(tokens, at) and not _another_axis(tokens, at)
+        return _side_follows(tokens, at) and not _another_part(tokens, at)
     return found.noun == "corner" and found.plural and at + 1 < len(tokens) and tokens[at + 1].category == "side"
 
 
@@ -164,16 +164,17 @@ def _side_follows(tokens: Sequence[Token], at: int) -> bool:
     return at < len(tokens) and tokens[at].category == "noun"
 
 
-def _another_axis(tokens: Sequence[Token], at: int) -> bool:
-    """``left over right, bottom third up``: a side and a share that lie on different axes are no list."""
+def _another_part(tokens: Sequence[Token], at: int) -> bool:
+    """``left over right, bottom third up``: sides that name two parts, one each, are no list."""
     ahead = at
     while tokens[ahead].category in ("side", "join"):
         ahead += 1
+    if not any(token.is_("join", "and") for token in tokens[at:ahead]):
+        return not tokens[ahead].plural
     sides = {token.value for token in tokens[at - 1 : ahead] if token.category == "side"}
-    listed = any(token.is_("join", "and") for token in tokens[at:ahead])
     crossed = bool(sides & {"left", "right"}) and bool(sides & {"top", "bottom"})
     single = tokens[at - 1].category == "side" and (at < 2 or tokens[at - 2].category != "side")
-    return crossed and single and (not listed or tokens[ahead].value in ("third", "quarter", "half"))
+    return crossed and single and tokens[ahead].value in ("third", "quarter", "half")
 
 
 def _attachments(found: NounPhrase, tokens: Sequence[Token], at: int) -> tuple[NounPhrase, int]:
@@ -213,6 +214,8 @@ def _may_place(found: NounPhrase, sides: frozenset[str]) -> bool:
 
 def _part_of(outer: NounPhrase, inner: NounPhrase) -> NounPhrase:
     garments = (*outer.garments, *inner.garments)
+    if outer.noun == "centre" and inner.noun in ("edge", "sleeve", "leg", "hem", "waist"):
+        return replace(outer, noun="edgecentre", garments=garments)
     if inner.noun is None or outer.noun in (
         "centre",
         "midline",

@@ -11,6 +11,9 @@ from polyfold_llms.folding.tokens import Token
 
 __all__ = ["SmallWords"]
 
+SUMMED_UP = ("block", "rectangle", "square", "strip", "store", "tidy", "envelope", "smalltriangle")
+"""Goals that take several folds."""
+
 
 class SmallWords:
     """The handlers of little words; :mod:`polyfold_llms.folding.assembly` keeps the state and ends clauses."""
@@ -85,11 +88,21 @@ class SmallWords:
             self.frame.leads, self.skip_to = led
         elif token.value == "colon" and self.frame.specific and (self.frame.verbs or self.frame.placed):
             self._close("sentence")
+        elif token.value == "colon" and self._announces(at):
+            self.frame.announces = True
+            self._close("sentence")
         elif token.value == "colon":
             split = set(self.frame.fractions) & {"third", "quarter"}
             if split:
                 self._close("sentence")
             self.purpose = bool(self.frame.fractions or self.frame.goals or self.frame.axes)
+
+    def _announces(self, at: int) -> bool:
+        """``fold it into a block: right sleeve in, left sleeve in, hem up``: what follows spells out several folds."""
+        sums_up = self.frame.times > 1 or bool(set(self.frame.goals) & set(SUMMED_UP))
+        rest = self.tokens[at + 1 :]
+        length = next((i for i, token in enumerate(rest) if token.category == "stop"), len(rest))
+        return sums_up and not self.frame.specific and any(t.category in ("join", "seq") for t in rest[:length])
 
     def _on_loose(self, token: Token, at: int) -> None:
         if token.text in ("wearer",):

@@ -107,6 +107,14 @@ ROUND = re.compile(
     r"(?: from)?"
 )
 """*Going round clockwise from the bottom left*: corners are told one after the other in that order anyway."""
+AT_ONCE = re.compile(
+    r",? (?:with )?(?:both|all)(?: of)?(?: the| its)?(?: two)? (?:legs|layers|halves|plies|ends) "
+    r"(?:at once|together|at the same time|as one|in one go)(?= ?[,.;]|$)"
+)
+"""An aside that all layers go along, which every fold takes anyway."""
+A_LITTLE = re.compile(
+    r"\ba (?:little|tiny|wee)(?: bit)?(?=[,.;]|$| (?:further|farther|over|up|down|in|past|short|beyond|towards?)\b)"
+)
 LINES_THAT_CROSS = r"(?:the |its |both |two |these )*(?:diagonals|(?:middle|centre|center|mid) ?lines|midlines|axes)"
 CROSSING = re.compile(
     rf"(?:(?:point|place|spot|position) )?(?:where|at which|in which) {LINES_THAT_CROSS} "
@@ -146,6 +154,8 @@ def read(text: str) -> Sentence:
     plain = _plain(text)
     plain = SIMILE.sub(_simile, plain)
     plain = ADVERB.sub("", plain)
+    plain = AT_ONCE.sub(" ", plain)
+    plain = A_LITTLE.sub("slightly", plain)
     plain = CROSSING.sub("centre", plain)
     plain = STATE.sub(" then ", plain)
     plain = ROUND.sub(lambda found: ", starting with" if found.group(1) else "", plain)
@@ -367,6 +377,12 @@ def _cut_off(token: Token, words: list[str], after: int) -> bool:
     following = {variant for variant, _ in _variants(words[after])}
     ends_in_side = token.text.split()[-1] in ("left", "right", "top", "bottom")
     if token.category in ("dir", "manner") and ends_in_side and (following & PART_WORDS or "hand" in following):
+        return True
+    if (
+        token.is_("quant", "opposite")
+        and token.text.endswith("across")
+        and words[after] in ("the", "its", "your", "to")
+    ):
         return True
     if token.category == "side" and token.value in ("long", "short") and following & {"sleeved", "sleeve"}:
         return True
