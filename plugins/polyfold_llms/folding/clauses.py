@@ -87,7 +87,8 @@ def _distinct(phrases: list[NounPhrase]) -> list[NounPhrase]:
     sided = [phrase for phrase in phrases if phrase.sides]
     if len(sided) == len(phrases) - 1 and phrases[0].number == sum(len(p.sides) for p in sided) > 1:
         return [replace(phrase, noun=phrase.noun or phrases[0].noun) for phrase in sided]
-    return [phrase for phrase in phrases if not (sided and _repeats(phrase))]
+    shares = ("third", "quarter") if all(phrase.noun == "corner" for phrase in sided) else ()
+    return [phrase for phrase in phrases if phrase.noun in shares or not (sided and _repeats(phrase))]
 
 
 def _repeats(phrase: NounPhrase) -> bool:

@@ -95,15 +95,34 @@ def fold_edge(part: Part, clause: Clause, garment: Garment) -> Fold:
         if goal == edge:
             raise NotUnderstoodError(f"the {edge} edge is where it should go already; name another target")
         raise NotUnderstoodError(f"I know no fold that lays the {edge} edge onto the {goal} edge next to it")
-    if clause.toward("corner"):
+    landing = {target.which for target in clause.targets if target.what == "corner"}
+    if landing and landing == {c for c in OPPOSITE_CORNER if OPPOSITE_EDGE.get(edge, "") in c.split("_")}:
+        return fold_in_half(garment, edge)
+    if landing:
         raise NotUnderstoodError("an edge can't be folded onto a corner; name the opposite edge or the middle")
     _check_direction(edge, clause)
     sideways = garment.family == "tshirt" and edge in ("left", "right")
     if "in" in clause.frame.directions and not clause.frame.fractions and (sideways or garment.family == "quad"):
         return Fold("middle", edge)
+    _check_alone(clause, garment)
     if not (clause.frame.directions or clause.frame.fractions or clause.targets or clause.axes):
+        plain = any(phrase.noun in (None, "edge", "half") for phrase in clause.frame.moving)
+        if plain and not clause.frame.verbs:
+            raise NotUnderstoodError(
+                f"it does not say where the {edge} part goes; name the opposite edge or the middle"
+            )
         garment.note(f"The instruction does not say where to; I fold the {edge} part onto the opposite one.")
     return fold_in_half(garment, edge)
+
+
+def _check_alone(clause: Clause, garment: Garment) -> None:
+    """Parts that only move along with the whole side must not stand for it: a collar, one leg halved on its own."""
+    nouns = {phrase.noun for phrase in clause.frame.moving}
+    if "neck" in nouns and not clause.targets:
+        raise NotUnderstoodError("a collar can't be folded on its own; name the shoulders and where they go")
+    one_leg = any(phrase.noun == "leg" and phrase.sides for phrase in clause.frame.moving)
+    if one_leg and clause.frame.fractions and not (clause.targets or clause.frame.directions):
+        raise NotUnderstoodError("a straight fold takes both legs along; one leg can't be halved on its own")
 
 
 def _meets_last(edge: str, clause: Clause, garment: Garment) -> bool:
@@ -114,8 +133,12 @@ def _meets_last(edge: str, clause: Clause, garment: Garment) -> bool:
 
 
 def _check_direction(edge: str, clause: Clause) -> None:
+    said = clause.frame.directions
     wrong = {"bottom": "down", "top": "up", "left": "left", "right": "right"}.get(edge)
-    if "out" in clause.frame.directions or (wrong in clause.frame.directions):
+    aside = {"up", "down"} if edge in ("left", "right") else {"left", "right"}
+    if aside & set(said) and not clause.targets and "over" not in said and edge in OPPOSITE_EDGE:
+        raise NotUnderstoodError(f"I know no fold that takes the {edge} part that way; name where it goes")
+    if "out" in said or wrong in said:
         raise NotUnderstoodError(
             f"folding the {edge} part that way would move it off the cloth; name the other direction"
         )

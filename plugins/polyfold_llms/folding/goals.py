@@ -21,7 +21,7 @@ def fold_in_half(garment: Garment, edge: str | None = None, chosen: str = "") ->
     halves = [fold for fold in garment.folds if fold.action == "half"]
     if len(halves) >= MAX_HALVES:
         raise NotUnderstoodError(f"cloth folded in half more than {MAX_HALVES} times is too thick to fold on")
-    if edge is None:
+    if edge in (None, "any"):
         edge = _free_edge(garment)
         garment.note(f"The instruction leaves open which half moves; I take the {edge} one.")
     manner = "gap" if gap_open(garment, edge) else ""
@@ -80,12 +80,14 @@ def fold_in_fraction(garment: Garment, fraction: str, edge: str | None = None) -
 
 def _in_thirds(garment: Garment, edge: str | None) -> list[Fold]:
     folds: list[Fold] = []
+    if edge in ("long", "short") and garment.family != "pants":
+        raise NotUnderstoodError(f"I can't tell which edges are the {edge} ones; say left, right, top or bottom")
     if garment.family == "pants":
         if not any(fold.part in ("left", "right") for fold in garment.folds):
             folds.append(fold_in_half(garment, "left"))
             garment.note("Pants in thirds: legs together first.")
         edge = "bottom"
-    elif edge is None:
+    elif edge in (None, "any"):
         edge = "left" if garment.family == "tshirt" else "bottom"
         garment.note(f"The instruction leaves open which way the thirds run; I begin with the {edge} third.")
     return [*folds, Fold("band", edge, share=1 / 3), Fold("band", OPPOSITE_EDGE[edge], share=1 / 3)]

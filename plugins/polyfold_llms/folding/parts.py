@@ -35,7 +35,7 @@ PLACES = {
     "result",
     "rest",
     "crease",
-    "edgecentre",
+    "detail",
 }
 
 
@@ -110,14 +110,16 @@ def resolve(phrase: NounPhrase, garment: Garment, role: str, context: NounPhrase
         noun = _kind_of_last(garment)
         if noun is None and phrase.sides and len(phrase.sides[0]) == 1:
             raise NotUnderstoodError(f"it is unclear which part “{phrase.text}” is; name it")
-    if noun == "edgecentre" and role != "axis":
+    if noun == "triangle" and garment.family == "quad" and not garment.folds and _two_sided(phrase):
+        noun = "corner"
+    if noun == "detail" and role != "axis":
         raise NotUnderstoodError(
-            f"“{phrase.text}” is no place that I can fold to; name a corner, an edge or the centre of the cloth"
+            f"“{phrase.text}” is neither a part that I can fold nor a place; name a corner, an edge or the centre"
         )
     if noun in PLACES:
         return [
             Part(
-                {"crease": "midline", "edgecentre": "centre"}.get(noun, noun),
+                {"crease": "midline", "detail": "centre"}.get(noun, noun),
                 next(iter(phrase.sides[0])) if phrase.sides else "",
             )
         ]
@@ -147,10 +149,14 @@ def _reading(noun: str | None, phrase: NounPhrase, garment: Garment) -> str:
         return "sleeve"
     if noun in ("third", "quarter"):
         return "band"
-    two_sides = bool(phrase.sides) and all(len(group & set(EDGES)) == 2 for group in phrase.sides)
-    if noun in ("corner", "tip") or (two_sides and garment.family == "quad"):
+    if noun in ("corner", "tip") or (_two_sided(phrase) and garment.family == "quad"):
         return "corner"
     return "edge"
+
+
+def _two_sided(phrase: NounPhrase) -> bool:
+    """Whether each group of sides tells a corner: *top left*."""
+    return bool(phrase.sides) and all(len(group & set(EDGES)) == 2 for group in phrase.sides)
 
 
 def _sleeves(phrase: NounPhrase, garment: Garment, role: str, noun: str | None) -> list[Part]:
@@ -190,6 +196,8 @@ def _corners(phrase: NounPhrase, garment: Garment, role: str, noun: str | None) 
 def _unsided_corners(phrase: NounPhrase, garment: Garment, role: str) -> list[str]:
     moved = [fold.part for fold in garment.folds if fold.action == "corner"]
     left = [corner for corner in CORNERS if corner not in moved]
+    if not left:
+        raise NotUnderstoodError("every corner is folded already; none is left")
     last = moved[-1] if moved else None
     if phrase.quantity == "opposite":
         if phrase.number == 2 or phrase.plural:

@@ -171,6 +171,10 @@ def _another_part(tokens: Sequence[Token], at: int) -> bool:
         ahead += 1
     if not any(token.is_("join", "and") for token in tokens[at:ahead]):
         return not tokens[ahead].plural
+    first = sum(token.category == "side" for token in tokens[max(0, at - 2) : at])
+    last = sum(token.category == "side" for token in tokens[max(at, ahead - 2) : ahead])
+    if first < last and not tokens[ahead].plural:
+        return True
     sides = {token.value for token in tokens[at - 1 : ahead] if token.category == "side"}
     crossed = bool(sides & {"left", "right"}) and bool(sides & {"top", "bottom"})
     single = tokens[at - 1].category == "side" and (at < 2 or tokens[at - 2].category != "side")
@@ -214,8 +218,11 @@ def _may_place(found: NounPhrase, sides: frozenset[str]) -> bool:
 
 def _part_of(outer: NounPhrase, inner: NounPhrase) -> NounPhrase:
     garments = (*outer.garments, *inner.garments)
+    share = outer.noun in ("half", "third", "quarter")
+    if share and (inner.noun == "sleeve" or (inner.noun == "leg" and inner.sides)):
+        return replace(outer, noun="detail", garments=garments)
     if outer.noun == "centre" and inner.noun in ("edge", "sleeve", "leg", "hem", "waist"):
-        return replace(outer, noun="edgecentre", garments=garments)
+        return replace(outer, noun="detail", garments=garments)
     if inner.noun is None or outer.noun in (
         "centre",
         "midline",

@@ -78,7 +78,8 @@ SIMILES = {
     "shutter": "like shutters", "door": "like shutters", "cupboard": "like shutters", "gate": "like shutters",
     "window": "like shutters", "cabinet": "like shutters", "wardrobe": "like shutters", "book": "like a book",
     "letter": "like a letter", "envelope": "like an envelope", "blintz": "like an envelope", "shop": "like in a shop",
-    "store": "like in a shop",
+    "store": "like in a shop", "accordion": "pleat", "concertina": "pleat", "zigzag": "pleat", "burrito": "roll",
+    "sausage": "roll", "scroll": "roll", "tube": "roll", "fan": "pleat",
 }  # fmt: skip
 """Comparisons that say how to fold; others are dropped: *like the first step of a paper plane*."""
 LISTED = re.compile(r"(?:^|(?<=[\s.,;]))\(?\d[.)]\s")
@@ -107,6 +108,7 @@ ROUND = re.compile(
     r"(?: from)?"
 )
 """*Going round clockwise from the bottom left*: corners are told one after the other in that order anyway."""
+AND_BACK = re.compile(r"\band (?:then )?back(?: out)?(?: again)?(?= ?[.,;]| ?$)")
 AT_ONCE = re.compile(
     r",? (?:with )?(?:both|all)(?: of)?(?: the| its)?(?: two)? (?:legs|layers|halves|plies|ends) "
     r"(?:at once|together|at the same time|as one|in one go)(?= ?[,.;]|$)"
@@ -154,6 +156,7 @@ def read(text: str) -> Sentence:
     plain = _plain(text)
     plain = SIMILE.sub(_simile, plain)
     plain = ADVERB.sub("", plain)
+    plain = AND_BACK.sub(" and unfold it", plain)
     plain = AT_ONCE.sub(" ", plain)
     plain = A_LITTLE.sub("slightly", plain)
     plain = CROSSING.sub("centre", plain)

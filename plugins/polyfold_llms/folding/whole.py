@@ -38,6 +38,8 @@ def fold_whole(clause: Clause, garment: Garment, steps: int | None) -> list[Fold
             raise NotUnderstoodError("it asks to carry the cloth somewhere; I only fold")
         return _led_folds(fold_for_goal(garment, goal, steps), clause, garment)
     if goal is None and frame.again and garment.folds:
+        if garment.folds[-1].action in ("middle", "sleeve", "band"):
+            raise NotUnderstoodError("it is unclear what is to be done again")
         return [fold_in_half(garment, moving_edge(clause, garment))]
     if len(clause.targets) == 1 and clause.targets[0].which in OPPOSITE_EDGE and (frame.directions or garment.folds):
         return [fold_in_half(garment, OPPOSITE_EDGE[clause.targets[0].which])]
