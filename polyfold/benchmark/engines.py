@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import multiprocessing
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -45,7 +46,7 @@ REACH, HEIGHT, DURATION, SETTLING = 0.015, 0.45, 1.2, 0.6
 """Radius of a grasp [m], height of the path as a share of its width, time of the motion and for settling [s]."""
 
 PATIENCE = 120.0
-"""An engine that needs more processor time than this for one fold is stopped [s]."""
+"""An engine that needs longer than this for one fold is stopped [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +120,7 @@ def _compare(script: Script, garment: Garment, seed: int) -> None:
             print(f"| {script.name} | {name} | skipped: not installed, pip install {package} | | | | |")
             continue
         try:
-            positions, seconds = fold(job)
+            positions, seconds = _in_child(fold, job)
         except TimeoutError:
             print(
                 f"| {script.name} | {name} | {len(flat.positions)} | gave up after {PATIENCE:.0f} s | | | |", flush=True
@@ -129,9 +130,30 @@ def _compare(script: Script, garment: Garment, seed: int) -> None:
         _report(script, name, trial, garment, state, seconds, ours)
 
 
-def _check_patience(started: float) -> None:
-    if time.process_time() - started > PATIENCE:
-        raise TimeoutError
+def _in_child(fold: Callable[[Job], tuple[Floats, float]], job: Job) -> tuple[Floats, float]:
+    """Run an engine in a process of its own, which can be stopped even in the middle of one of its steps.
+
+    Raises:
+        TimeoutError: after ``PATIENCE``, or if the engine brought its process down.
+    """
+    context = multiprocessing.get_context("spawn")
+    receiver, sender = context.Pipe(duplex=False)
+    child = context.Process(target=_send, args=(sender, fold, job), daemon=True)
+    child.start()
+    sender.close()
+    try:
+        if not receiver.poll(PATIENCE):
+            raise TimeoutError
+        return receiver.recv()
+    except EOFError as error:
+        raise TimeoutError from error
+    finally:
+        child.kill()
+        child.join()
+
+
+def _send(sender: Any, fold: Callable[[Job], tuple[Floats, float]], job: Job) -> None:
+    sender.send(fold(job))
 
 
 def _report(
@@ -193,8 +215,6 @@ def _newton(job: Job) -> tuple[Floats, float]:
         states = [model.state(), model.state()]
         control, contacts = model.control(), model.contacts()
 
-        started = time.process_time()
-
         def run(frames: int, progress: Callable[[float], float | None]) -> None:
             for step in range(frames * substeps):
                 if step % substeps == 0:
@@ -203,7 +223,6 @@ def _newton(job: Job) -> tuple[Floats, float]:
                 if held_at is not None:
                     q, qd = states[0].particle_q.numpy(), states[0].particle_qd.numpy()
                     q[job.held], qd[job.held] = job.carried(held_at), 0.0
-                _check_patience(started)
                 states[0].clear_forces()
                 solver.step(states[0], states[1], control, contacts, frame / substeps)
                 states.reverse()
@@ -212,7 +231,12 @@ def _newton(job: Job) -> tuple[Floats, float]:
         states[0].particle_q.assign(start.astype(np.float32))
         states[0].particle_qd.zero_()
         started = time.process_time()
+        # What a gripper holds must not be moved by the constraints between the steps that place it.
+        inverse_mass = model.particle_inv_mass.numpy()
+        free = inverse_mass.copy()
+        inverse_mass[job.held] = 0.0
         run(round(DURATION / frame), lambda t: t)
+        inverse_mass[:] = free
         run(round(SETTLING / frame), lambda _: None)
         seconds = time.process_time() - started
         return states[0].particle_q.numpy().astype(float), seconds
@@ -251,7 +275,6 @@ def _pybullet(job: Job) -> tuple[Floats, float]:
         for step in range(round(DURATION * 240)):
             for body, target in zip(bodies, job.carried(step / (DURATION * 240)), strict=True):
                 bullet.resetBasePositionAndOrientation(body, target.tolist(), [0, 0, 0, 1])
-            _check_patience(started)
             bullet.stepSimulation()
         for anchor in anchors:
             bullet.removeConstraint(anchor)
