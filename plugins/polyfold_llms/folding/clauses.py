@@ -9,6 +9,7 @@ from polyfold_llms.folding.flaps import fold_band, fold_corner, fold_corners, fo
 from polyfold_llms.folding.folds import Fold
 from polyfold_llms.folding.frames import WHOLES, Frame
 from polyfold_llms.folding.goals import MAX_HALVES, fold_in_fraction, fold_in_half
+from polyfold_llms.folding.lookahead import singled_out
 from polyfold_llms.folding.parts import Garment, NotUnderstoodError, Part
 from polyfold_llms.folding.phrases import NounPhrase
 from polyfold_llms.folding.whole import fold_whole
@@ -46,6 +47,7 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
         raise NotUnderstoodError("the middle can't be moved; name an edge, a corner or a part")
     if frame.leads is not None:
         moving = _led(moving, frame.leads, garment, context)
+    _check_one_place(moving, targets)
     folds: list[Fold] = []
     said = frame.verbs or frame.placed or frame.fractions or frame.goals or frame.same or previous
     if moving and not said and {part.what for part in moving} != {"sleeve"}:
@@ -65,6 +67,8 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
 
 def _begun(frame: Frame) -> Frame:
     """``begin with the left sleeve: fold it in``: what is begun with is what moves."""
+    if frame.from_source and len(frame.moving) == 2 and singled_out(frame.moving[1], frame.moving[0]):
+        return replace(frame, moving=frame.moving[1:], leads=frame.moving[0])
     pronouns = all(not p.names_part and not p.garments for p in frame.moving)
     whole = frame.fractions or frame.goals or "cornertocorner" in frame.manners
     if frame.leads is not None and pronouns and frame.placed and not whole:
@@ -150,6 +154,12 @@ def _led(moving: list[Part], leads: NounPhrase, garment: Garment, context: NounP
     if len(moving) == 4 and sorted(ranks) == [0, 9, 9, 9]:
         return moving[ranks.index(0) :] + moving[: ranks.index(0)]
     return [part for _, part in sorted(zip(ranks, moving, strict=True), key=lambda ranked: ranked[0])]
+
+
+def _check_one_place(moving: list[Part], targets: list[Part]) -> None:
+    places = {part for part in targets if part.what in ("corner", "edge") and part.which not in ("opposite", "any")}
+    if len(moving) == 1 and moving[0].what == "corner" and len(places) > 1:
+        raise NotUnderstoodError("it names more than one place for the same corner; say one fold after the other")
 
 
 def _fold_parts(moving: list[Part], clause: Clause, garment: Garment) -> list[Fold]:

@@ -48,6 +48,8 @@ def _with_previous(previous: Frame, frame: Frame) -> Frame | None:
 
 
 def _continues(previous: Frame, frame: Frame) -> bool:
+    if frame.same:
+        return False
     if not frame.moving and any(p.noun == "leg" for p in previous.moving):
         return False
     if previous.verbs != ["grasp"] and _meets_in_middle(previous):
@@ -91,7 +93,7 @@ def _forward(frames: list[Frame]) -> list[Frame]:
         bare = all(p.noun is None and p.pronoun is None for p in frame.moving)
         if said or not frame.specific or not following.specific or not following.placed:
             continue
-        if following.verbs and not bare:
+        if following.verbs and not bare and any(p.noun == "sleeve" for p in frame.moving):
             continue
         nouns = {p.noun for p in following.moving}
         noun = next(iter(nouns))

@@ -63,6 +63,8 @@ class OrderWords(SmallWords):
         if self.purpose and frame.moving and not frame.verbs:
             frame.leads = frame.moving.pop()
             self.purpose = False
+        elif frame.restated and frame.leads is frame.restated[-1]:
+            pass
         elif frame.moving and clause_ends(self.tokens, at + 1):
             frame.leads = frame.moving[-1] if frame.moving[-1].names_part else None
             if frame.elliptical and frame.leads is not None and not frame.placed and self.done:
@@ -70,8 +72,10 @@ class OrderWords(SmallWords):
                 self.frame = Frame()
 
     def _on_but(self, token: Token, at: int) -> None:
-        """``but only halfway`` limits the clause, any other is a new one."""
-        if not self.frame.empty and not (at + 1 < len(self.tokens) and self.tokens[at + 1].is_("only")):
+        """``but only halfway``, ``but stop at the middle`` limits the clause, any other is a new one."""
+        following = self.tokens[at + 1] if at + 1 < len(self.tokens) else token
+        limits = following.is_("only") or (following.is_("verb", "meet") and not self.frame.targets)
+        if not self.frame.empty and not limits:
             self._close()
             self.contrasted = True
 

@@ -218,6 +218,10 @@ def _may_place(found: NounPhrase, sides: frozenset[str]) -> bool:
 
 def _part_of(outer: NounPhrase, inner: NounPhrase) -> NounPhrase:
     garments = (*outer.garments, *inner.garments)
+    if outer.noun == "corner" and inner.noun == "edge" and len(inner.sides) == 1 and len(outer.sides) < 2:
+        return replace(outer, sides=(frozenset().union(*outer.sides, *inner.sides),), garments=garments)
+    if outer.noun == "edge" and outer.plural and inner.noun == "diagonal":
+        return replace(outer, noun="corner", quantity="opposite", number=2, garments=garments)
     share = outer.noun in ("half", "third", "quarter")
     if share and (inner.noun == "sleeve" or (inner.noun == "leg" and inner.sides)):
         return replace(outer, noun="detail", garments=garments)

@@ -109,6 +109,7 @@ ROUND = re.compile(
 )
 """*Going round clockwise from the bottom left*: corners are told one after the other in that order anyway."""
 AND_BACK = re.compile(r"\band (?:then )?back(?: out)?(?: again)?(?= ?[.,;]| ?$)")
+AND_SMALLER = re.compile(r"\band (?:then )?(?:into )?an? (?:even )?smaller (?:one|triangle)(?: still)? (?:by|with)\b")
 AT_ONCE = re.compile(
     r",? (?:with )?(?:both|all)(?: of)?(?: the| its)?(?: two)? (?:legs|layers|halves|plies|ends) "
     r"(?:at once|together|at the same time|as one|in one go)(?= ?[,.;]|$)"
@@ -156,6 +157,7 @@ def read(text: str) -> Sentence:
     plain = _plain(text)
     plain = SIMILE.sub(_simile, plain)
     plain = ADVERB.sub("", plain)
+    plain = AND_SMALLER.sub(", then ", plain)
     plain = AND_BACK.sub(" and unfold it", plain)
     plain = AT_ONCE.sub(" ", plain)
     plain = A_LITTLE.sub("slightly", plain)
