@@ -53,6 +53,7 @@ class _Assembler(OrderWords):
         self._line_last = False
         self._lead_last = False
         self._moving_last = False
+        self.axis_open = True
         self.sentence_start = 0
         self.skip_to = 0
         self.garments: list[str] = []
@@ -173,6 +174,7 @@ class _Assembler(OrderWords):
             else:
                 self._close()
         self.shaping = value == "make"
+        self.axis_open = False
         self.laying = token.text.startswith(LAYING)
         if value == "halve" and not (self.purpose and self.frame.specific):
             self.frame.fractions.append("half")
@@ -246,7 +248,7 @@ class _Assembler(OrderWords):
         frame = self.frame
         if phrase.noun in SEAMS or phrase.noun == "crease":
             frame.axes.append(phrase)
-            self.role = "axis" if phrase.noun == "crease" else "moving"
+            self.role, self.axis_open = "axis" if phrase.noun == "crease" else "moving", True
             return
         if self._restates(phrase):
             frame.restated.append(phrase)
@@ -272,7 +274,7 @@ class _Assembler(OrderWords):
             frame.axes
             and phrase.names_part
             and not self.joined
-            and (self._line_last or frame.axes[-1].noun == "crease")
+            and (self._line_last or (frame.axes[-1].noun == "crease" and self.axis_open))
         ):
             frame.axes.append(phrase)
         elif (self.purpose and frame.specific) or (frame.negated and frame.moving and phrase.pronoun == "it"):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from polyfold_llms.folding.clause import MIDDLE, Clause, ahead_of, parts_of
 from polyfold_llms.folding.flaps import fold_band, fold_corner, fold_corners, fold_edge, fold_edges, fold_sleeve
-from polyfold_llms.folding.folds import Fold
+from polyfold_llms.folding.folds import OPPOSITE_EDGE, Fold
 from polyfold_llms.folding.frames import WHOLES, Frame
 from polyfold_llms.folding.goals import MAX_HALVES, fold_in_fraction, fold_in_half
 from polyfold_llms.folding.lookahead import singled_out
@@ -62,6 +62,7 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
         raise NotUnderstoodError(f"it is unclear whether “{frame.moving[0].text}” or “{corners[0]}” is to be folded")
     for _ in range(frame.times):
         folds += _fold_parts(moving, clause, ahead_of(garment, folds))
+    _check_restated(frame, folds)
     return folds
 
 
@@ -154,6 +155,17 @@ def _led(moving: list[Part], leads: NounPhrase, garment: Garment, context: NounP
     if len(moving) == 4 and sorted(ranks) == [0, 9, 9, 9]:
         return moving[ranks.index(0) :] + moving[: ranks.index(0)]
     return [part for _, part in sorted(zip(ranks, moving, strict=True), key=lambda ranked: ranked[0])]
+
+
+def _check_restated(frame: Frame, folds: list[Fold]) -> None:
+    """What the clause mentions besides must belong to its folds; else it asks for more than was understood."""
+    covered = {side for fold in folds for name in (fold.part, fold.target) for side in name.split("_")}
+    covered |= {OPPOSITE_EDGE[fold.part] for fold in folds if fold.action == "half"}
+    for phrase in frame.restated:
+        if phrase.sides and not all(group & covered for group in phrase.sides):
+            raise NotUnderstoodError(
+                f"it is unclear what is to be done with “{phrase.text}”; say it in its own sentence"
+            )
 
 
 def _check_one_place(moving: list[Part], targets: list[Part]) -> None:

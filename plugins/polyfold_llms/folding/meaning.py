@@ -166,7 +166,10 @@ def _specifies(frame: Frame, latest: Frame, garment: Garment) -> bool:
     if not frame.aside or frame.again or last is None or len(frame.moving) != 1:
         return False
     probe = replace(garment, folds=garment.folds[:-1], notes=[])
-    found = folds_of_frame(frame, probe, None, None)
+    try:
+        found = folds_of_frame(frame, probe, None, None)
+    except NotUnderstoodError:  # then it says nothing about the fold before it
+        return False
     if len(found) != 1 or found[0].action != last.action:
         return False
     open_side = last.action == "half" and not any(phrase.sides for phrase in latest.moving)

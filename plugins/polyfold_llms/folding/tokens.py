@@ -109,6 +109,9 @@ ROUND = re.compile(
 )
 """*Going round clockwise from the bottom left*: corners are told one after the other in that order anyway."""
 AND_BACK = re.compile(r"\band (?:then )?back(?: out)?(?: again)?(?= ?[.,;]| ?$)")
+FOLD_LINE = re.compile(r"\b(the|a|this|that) fold (?=(?:at|along|run|runs|running|goes|going|lies|lying|from)\b)")
+HALF_AS = re.compile(r"\bhalf as (wide|tall|high|long|big|large|deep)\b(?: as (?:before|it was|now))?")
+HALF_AS_MANNER = {"wide": "sideways", "tall": "horizontally", "high": "horizontally", "deep": "horizontally"}
 AND_SMALLER = re.compile(r"\band (?:then )?(?:into )?an? (?:even )?smaller (?:one|triangle)(?: still)? (?:by|with)\b")
 AT_ONCE = re.compile(
     r",? (?:with )?(?:both|all)(?: of)?(?: the| its)?(?: two)? (?:legs|layers|halves|plies|ends) "
@@ -157,6 +160,8 @@ def read(text: str) -> Sentence:
     plain = _plain(text)
     plain = SIMILE.sub(_simile, plain)
     plain = ADVERB.sub("", plain)
+    plain = FOLD_LINE.sub(r"\1 crease ", plain)
+    plain = HALF_AS.sub(lambda found: f"in half {HALF_AS_MANNER.get(found.group(1), '')}", plain)
     plain = AND_SMALLER.sub(", then ", plain)
     plain = AND_BACK.sub(" and unfold it", plain)
     plain = AT_ONCE.sub(" ", plain)
