@@ -9,8 +9,10 @@ half an ellipse.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib.util
 import multiprocessing
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -153,7 +155,9 @@ def _in_child(fold: Callable[[Job], tuple[Floats, float]], job: Job) -> tuple[Fl
 
 
 def _send(sender: Any, fold: Callable[[Job], tuple[Floats, float]], job: Job) -> None:
-    sender.send(fold(job))
+    # Engines announce themselves; the table is what should be printed.
+    with contextlib.redirect_stdout(sys.stderr):
+        sender.send(fold(job))
 
 
 def _report(
@@ -189,10 +193,11 @@ def _job(garment: Garment, flat: SimState, action: Action) -> Job:
 
 def _newton(job: Job) -> tuple[Floats, float]:
     """Newton's particle solver on the CPU, 20 substeps per 1/60 s."""
-    import newton
     import warp as wp
 
-    wp.config.quiet = True
+    wp.config.quiet = True  # before newton, which starts warp
+    import newton
+
     radius, substeps, frame = 0.005, 20, 1 / 60
     # Spheres of this size touch at twice the radius, so its two layers have to lie farther apart than ours.
     start = job.flat.copy()
@@ -209,7 +214,7 @@ def _newton(job: Job) -> tuple[Floats, float]:
             add_springs=True, spring_ke=1e4, spring_kd=0.0, particle_radius=radius,
         )  # fmt: skip
         model = builder.finalize()
-        model.soft_contact_mu, model.particle_mu = 0.8, 0.6
+        model.soft_contact_mu, model.particle_mu, model.particle_max_velocity = 0.8, 0.6, 5.0
         # Its constraints are solved all at once, so that stiff springs need strong relaxation.
         solver = newton.solvers.SolverXPBD(model=model, iterations=4, soft_body_relaxation=0.2)
         states = [model.state(), model.state()]
