@@ -189,7 +189,7 @@ class _Assembler(OrderWords):
     def _begins_clause(self, token: Token) -> bool:
         frame = self.frame
         explains = token.form == "ing" and (
-            (not frame.specific and (frame.fractions or frame.goals or frame.axes))
+            (not frame.specific and (frame.fractions or frame.goals or frame.axes or (self.comma and frame.manners)))
             or (self.comma and frame.specific and bool(frame.verbs))
         )
         if explains:

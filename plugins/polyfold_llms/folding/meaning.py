@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from polyfold_llms.folding.assembly import frames_of
 from polyfold_llms.folding.clause import parts_of
 from polyfold_llms.folding.clauses import folds_of_frame
 from polyfold_llms.folding.ellipsis import completed
-from polyfold_llms.folding.folds import OPPOSITE_EDGE, Fold
+from polyfold_llms.folding.folds import EDGES, OPPOSITE_EDGE, Fold
 from polyfold_llms.folding.frames import Frame, Request
 from polyfold_llms.folding.goals import fold_for_goal
 from polyfold_llms.folding.parts import Garment, NotUnderstoodError
@@ -50,6 +51,7 @@ def understand(text: str, garment: Garment) -> Meaning:
         raise NotUnderstoodError("it names nothing that should be folded")
     _fold_frames(frames, garment, request.steps)
     folds = _without(garment.folds[start:], barred, garment)
+    _check_turns(folds)
     _check_count(folds, request.steps)
     return Meaning(tuple(folds), tuple(garment.notes))
 
@@ -207,6 +209,14 @@ def _without(folds: list[Fold], barred: set[tuple[str, str]], garment: Garment) 
 def _touched(fold: Fold) -> set[tuple[str, str]]:
     what = {"half": "edge", "middle": "edge"}.get(fold.action, fold.action)
     return {(what, fold.part)}
+
+
+def _check_turns(folds: list[Fold]) -> None:
+    """A half fold and then its mirror image: most likely one fold told twice."""
+    for first, second in pairwise(folds):
+        halves = first.action == second.action == "half" and first.part in EDGES
+        if halves and second.part == OPPOSITE_EDGE[first.part]:
+            raise NotUnderstoodError(f"it folds the {first.part} half over and then the {second.part} one; say which")
 
 
 def _check_count(folds: list[Fold], steps: int | None) -> None:

@@ -49,6 +49,12 @@ def fold_whole(clause: Clause, garment: Garment, steps: int | None) -> list[Fold
         return fold_for_goal(garment, "default", steps)
     if set(frame.verbs) == {"turn"} and frame.directions == ["over"]:
         raise NotUnderstoodError("turning the whole garment over is no fold; I only fold parts over onto the cloth")
+    if (
+        frame.manners
+        and set(frame.manners) <= {"straight", "slanted", "halfway"}
+        and not (frame.directions or frame.again)
+    ):
+        raise NotUnderstoodError("it does not say which part to move")
     if frame.directions or frame.manners or frame.again:
         return [fold_in_half(garment, moving_edge(clause, garment))]
     if set(frame.verbs) & {"fold", "tidy", "halve"}:
