@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
         observer=None if arguments.json else Printer(),
     )
     if arguments.json:
-        print(json.dumps(episode.summary()))
+        print(json.dumps({**episode.summary(), "out": str(arguments.out) if arguments.out else None}))
     else:
         _print_result(episode, arguments.out)
     return 0
