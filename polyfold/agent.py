@@ -38,7 +38,7 @@ class PolyFoldAgent:
         recover: bool = Field(True, description="look whether a fold took effect and repeat it if not")
         retries: int = Field(3, ge=0, le=10, description="times that one fold is repeated at most")
         remaining: float = Field(
-            0.35, gt=0, lt=1, description="share of the flap's depth that, still left of the line, means a failed fold"
+            0.25, gt=0, lt=1, description="share of the flap's depth that, still left of the line, means a failed fold"
         )
 
     def __init__(
