@@ -399,7 +399,9 @@ class _Assembler(OrderWords):
     def _on_frac(self, token: Token, at: int) -> None:
         complete = self.frame.specific and self.frame.placed
         explained = self.purpose and not (complete and self.frame.fractions)
-        if self.joined and (self.frame.fractions or complete) and not explained:
+        last = at + 1 >= len(self.tokens) or self.tokens[at + 1].category == "stop"
+        sums_up = self.comma and last and not self.frame.fractions  # "left over right, in half"
+        if self.joined and (self.frame.fractions or complete) and not (explained or sums_up):
             self._close()
         self.frame.fractions.append(token.value)
 

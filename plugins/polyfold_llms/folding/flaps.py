@@ -78,6 +78,9 @@ def fold_edge(part: Part, clause: Clause, garment: Garment) -> Fold:
         opposite = edge in OPPOSITE_EDGE and Part("edge", OPPOSITE_EDGE[edge]) in clause.axes
         if opposite:
             return fold_in_half(garment, edge)
+    last = garment.folds[-1] if garment.folds else None
+    if opposite and clause.toward(*MIDDLE) and last == Fold("middle", OPPOSITE_EDGE[edge]):
+        return Fold("middle", edge)  # the opposite edge lies at the middle by now
     if opposite:
         return fold_in_half(garment, edge)
     if clause.toward(*MIDDLE) or clause.has("halfway", "meetmiddle"):
