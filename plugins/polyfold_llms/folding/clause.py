@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from polyfold_llms.folding.folds import Fold
+from polyfold_llms.folding.folds import OPPOSITE_EDGE, Fold
 from polyfold_llms.folding.frames import Frame
 from polyfold_llms.folding.parts import Garment, Part, resolve
 from polyfold_llms.folding.phrases import NounPhrase
@@ -54,6 +54,9 @@ def moving_edge(clause: Clause, garment: Garment) -> str | None:
         return "left"
     if clause.has("horizontal") or spans == {"left", "right"}:
         return "bottom"
+    goals = {part.which for part in clause.targets if part.what == "edge"} & set(OPPOSITE_EDGE) - {"long", "short"}
+    if len(goals) == 1:
+        return OPPOSITE_EDGE[goals.pop()]
     long_way = garment.kind == "rectangle"
     if clause.has("lengthwise"):
         return "long" if long_way else "left"

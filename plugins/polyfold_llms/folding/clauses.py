@@ -134,10 +134,15 @@ def _inherited(frame: Frame, previous: Frame | None) -> Frame:
     bare = frame.specific and not (frame.placed or frame.fractions or frame.goals)
     if bare and (frame.elliptical or not frame.verbs):
         targets = [p for p in previous.targets if p.noun in MIDDLE or p.noun == "body" or p.quantity == "opposite"]
+        noun = next((p.noun for p in previous.moving if p.noun), None)
         return replace(
-            frame, targets=targets, manners=list(previous.manners), axes=_sideless(previous.axes),
+            frame,
+            moving=[p if p.noun or p.pronoun else replace(p, noun=noun) for p in frame.moving],
+            targets=targets,
+            manners=list(previous.manners),
+            axes=_sideless(previous.axes),
             directions=[d for d in previous.directions if d not in ("left", "right", "up", "down")],
-        )  # fmt: skip
+        )
     return frame
 
 

@@ -93,6 +93,8 @@ def _forward(frames: list[Frame]) -> list[Frame]:
         bare = all(p.noun is None and p.pronoun is None for p in frame.moving)
         if said or not frame.specific or not following.specific or not following.placed:
             continue
+        if bare and index and filled[index - 1].specific and filled[index - 1].placed:
+            continue  # "then the left": another part of the clause before
         if following.verbs and not bare and any(p.noun == "sleeve" for p in frame.moving):
             continue
         nouns = {p.noun for p in following.moving}
@@ -138,7 +140,8 @@ def _announced(frames: list[Frame]) -> list[Frame]:
 def _spelled_out(frame: Frame, following: list[Frame]) -> bool:
     """*In thirds: the lower third up, the upper third down*: two folds that make up the fraction before them."""
     share = set(frame.fractions) & {"third", "quarter"}
-    return (
+    listed = bool(following) and sum(p.noun in share for p in following[0].moving) > 1 and following[0].placed
+    return listed or (
         bool(share) and not frame.specific and len(following) == 2 and all(f.specific and f.placed for f in following)
     )
 

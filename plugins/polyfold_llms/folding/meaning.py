@@ -212,7 +212,10 @@ def _touched(fold: Fold) -> set[tuple[str, str]]:
 
 
 def _check_turns(folds: list[Fold]) -> None:
-    """A half fold and then its mirror image: most likely one fold told twice."""
+    """The same fold again, or a half fold and then its mirror image: most likely one fold told twice."""
+    once = [(fold.action, fold.part) for fold in folds if fold.action in ("band", "middle", "sleeve")]
+    if len(set(once)) < len(once):
+        raise NotUnderstoodError("it seems to ask for the same fold twice; name each fold once")
     for first, second in pairwise(folds):
         halves = first.action == second.action == "half" and first.part in EDGES
         if halves and second.part == OPPOSITE_EDGE[first.part]:
