@@ -186,9 +186,7 @@ def _plain(text: str) -> str:
     text = re.sub(r"\blower (?=the |its |it\b)", "bring down ", text)
     text = NAMED_ASIDE.sub(" ", text)
     text = re.sub(r"\bi\.e\.|\be\.g\.", " ", text).replace("ontop", "on top")
-    text = re.sub(
-        r"(?:the )?order (?:does not|doesn't|is not|isn't) (?:matter|important)|no matter the order", " ", text
-    )
+    text = ANY_ORDER.sub(" ", text)
     text = HANDS.sub(" ", text)
     if re.search(r"mid|cent", text):
         text = QUARTER_WAY.sub(" ", text)
