@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from polyfold.errors import ConfigError
 
-__all__ = ["Choice", "Experiment", "load", "to_toml"]
+__all__ = ["Choice", "Experiment", "load", "read_toml", "to_toml"]
 
 
 class Choice(BaseModel):
@@ -70,14 +70,19 @@ class Experiment(BaseModel):
 
 def load(path: str | Path) -> Experiment:
     """Read an experiment from a TOML file. Raises ConfigError with the file and the wrong line or setting."""
+    settings = read_toml(path)
+    return _validated(settings, str(path))
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """The content of a TOML file. Raises ConfigError with the file and the line that is wrong."""
     path = Path(path)
     try:
-        settings = tomllib.loads(path.read_text("utf-8"))
+        return tomllib.loads(path.read_text("utf-8"))
     except FileNotFoundError as error:
         raise ConfigError(f"there is no file {path}; check the path") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} is not valid TOML: {error}; correct it") from error
-    return _validated(settings, str(path))
 
 
 def _validated(settings: dict[str, Any], source: str) -> Experiment:

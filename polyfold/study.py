@@ -11,7 +11,6 @@ from __future__ import annotations
 import fnmatch
 import hashlib
 import itertools
-import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -20,7 +19,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from polyfold.config import Experiment
+from polyfold.config import Experiment, read_toml
 from polyfold.errors import ConfigError
 from polyfold.judging import suite
 from polyfold.tasks import Task
@@ -79,15 +78,9 @@ class Cell:
 
 def load(path: str | Path) -> Study:
     """Read a study from TOML. Raises ConfigError with the file and the setting that is wrong."""
-    path = Path(path)
+    settings = read_toml(path)
     try:
-        settings = tomllib.loads(path.read_text("utf-8"))
-    except FileNotFoundError as error:
-        raise ConfigError(f"there is no file {path}; check the path") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path} is not valid TOML: {error}; correct it") from error
-    try:
-        study = Study(**{"name": path.stem, **settings})
+        study = Study(**{"name": Path(path).stem, **settings})
     except (ValidationError, TypeError) as error:
         raise ConfigError(_problem(error, str(path))) from error
     for variant in study.variants:
