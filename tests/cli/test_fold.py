@@ -154,3 +154,24 @@ def test_episode_shows_itself_in_jupyter():
     episode = polyfold.fold("fold the square in half", garment=polyfold.garment("square", 2001, edge_length=0.03))
     assert "data:image/png;base64," in episode._repr_html_()
     assert episode.show().shape[2] == 3
+
+
+def test_a_mesh_file_is_folded_and_needs_its_keypoints(polyfold, tmp_path):
+    import polyfold as library
+
+    cloth = library.garment("rectangle", seed=2001, edge_length=0.03)
+    lines = [f"v {x:.6f} {y:.6f} 0" for x, y in cloth.mesh.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in cloth.mesh.triangles + 1]
+    (tmp_path / "towel.obj").write_text("\n".join(lines) + "\n")
+    (tmp_path / "keypoints.json").write_text(json.dumps(cloth.keypoints))
+    arguments = ("fold", "fold the left edge onto the right edge", "--garment", "rectangle", "--mesh")
+    without = polyfold(*arguments, tmp_path / "towel.obj", *COARSE)
+    assert without.status == 1
+    assert "keypoints" in without.err
+    result = polyfold(
+        *arguments, tmp_path / "towel.obj", "--keypoints", tmp_path / "keypoints.json", "--json", *COARSE
+    )  # fmt: skip
+    assert result.status == 0, result.err
+    episode = json.loads(result.out)
+    assert episode["garment"]["name"] == "towel"
+    assert episode["fidelity"]["iou"] > 0.9
