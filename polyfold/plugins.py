@@ -143,7 +143,7 @@ def _hook_names() -> list[str]:
 
 
 def _did_you_mean(name: str, candidates: list[str]) -> str:
-    close = get_close_matches(name, candidates, n=1, cutoff=0.5)
+    close = get_close_matches(name, candidates, n=1, cutoff=0.6)
     return f"did you mean {close[0]!r}?" if close else f"the known ones are: {', '.join(candidates)}"
 
 
