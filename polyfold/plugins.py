@@ -39,6 +39,7 @@ __all__ = [
     "refresh",
     "register",
     "unobserve",
+    "unregister",
 ]
 
 GROUP = "polyfold"
@@ -161,6 +162,14 @@ def register(kind: str, name: str, target: type | str, summary: str = "", needs:
     component = Component(name, target, summary, tuple(needs), Plugin("<session>", "", "", "registered by hand"))
     _explicit[:] = [(k, c) for k, c in _explicit if (k, c.name) != (kind, name)]
     _explicit.append((kind, component))
+    refresh()
+
+
+def unregister(kind: str, name: str) -> None:
+    """Forget what :func:`register` added under a name. Raises PluginError if nothing was."""
+    if (kind, name) not in by_hand():
+        raise PluginError(f"no {_singular(kind)} {name!r} was registered by hand; there is nothing to forget")
+    _explicit[:] = [(k, c) for k, c in _explicit if (k, c.name) != (kind, name)]
     refresh()
 
 

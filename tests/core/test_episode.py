@@ -49,8 +49,8 @@ def _registered():
     for cls in (Spy, Guided, Privileged, Wishful):
         polyfold.register("agents", cls.__name__.lower(), cls, "a test's agent")
     yield
-    plugins._explicit.clear()
-    plugins.refresh()
+    for kind, name in plugins.by_hand():
+        plugins.unregister(kind, name)
 
 
 @pytest.fixture

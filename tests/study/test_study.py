@@ -120,5 +120,4 @@ def test_a_component_of_a_notebook_is_refused_by_workers_with_the_reason(tmp_pat
         with pytest.raises(ConfigError, match="can't reach worker processes"):
             evaluate(polyfold.Study(**SMALL), tmp_path, workers=2, progress=False)
     finally:
-        polyfold.plugins._explicit.clear()
-        polyfold.plugins.refresh()
+        polyfold.plugins.unregister("policies", "local")
