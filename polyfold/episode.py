@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MAX_STEPS", "Episode", "EpisodeStart", "Failure", "Step", "build_agent", "run_episode"]
 
-MAX_STEPS = 12
-"""Folds after which an agent that never says it is done is stopped."""
+MAX_STEPS = 48
+"""Folds, repeated ones included, after which an agent that never says it is done is stopped."""
 
 GUIDED = frozenset({"subgoal_texts", "subgoal_images", "goal_image", "fold_lines"})
 PRIVILEGED = frozenset({"fold_lines", "state", "simulator"})

@@ -14,7 +14,7 @@ from polyfold import plugins
 from polyfold.attribution import attribute
 from polyfold.episode import Episode, run_episode
 from polyfold.garments import Garment
-from polyfold.judging import suite
+from polyfold.judging import final_mask, suite
 from polyfold.references import Reference, reference_for
 from polyfold.scoring import PRESETS, Outcome, succeeded
 from polyfold.study import Cell, Study, experiment_of
@@ -96,8 +96,7 @@ def _record(cell: Cell, task: Task, episode: Episode, reference: Reference) -> R
 
 
 def _scores(episode: Episode, reference: Reference) -> Mapping[str, float]:
-    mask = episode.experiment.create("segmenters", "segmenter").segment(episode.final)
-    result = Outcome(episode.initial_state, episode.final_state, mask)
+    result = Outcome(episode.initial_state, episode.final_state, final_mask(episode))
     return {
         name: plugins.create("metrics", name).score(result, [reference.outcome]) for name in plugins.names("metrics")
     }

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
+from numpy.typing import NDArray
+
 from polyfold import plugins
 from polyfold.episode import Episode
 from polyfold.errors import ConfigError, GroundingError
@@ -12,7 +15,7 @@ from polyfold.ideal import fidelity
 from polyfold.tasks import Suite, Task, fold_lines, load_suite, recognise
 from polyfold.types import FoldLine
 
-__all__ = ["find_task", "judge", "known_tasks", "suite"]
+__all__ = ["final_mask", "find_task", "judge", "known_tasks", "suite"]
 
 
 @cache
@@ -36,6 +39,14 @@ def find_task(task_id: str, kind: str) -> Task:
     raise ConfigError(f"no task for a {kind} is called {task_id!r}; choose one of: {known or 'none is installed'}")
 
 
+def final_mask(episode: Episode) -> NDArray[np.bool_]:
+    """The cloth in the last picture, bool, shape (H, W); empty if it was carried out of sight."""
+    try:
+        return episode.experiment.create("segmenters", "segmenter").segment(episode.final)
+    except GroundingError:
+        return np.zeros(episode.final.depth.shape, bool)
+
+
 def judge(episode: Episode, task_id: str | None = None) -> Episode:
     """The episode with its fidelity.
 
@@ -51,13 +62,8 @@ def judge(episode: Episode, task_id: str | None = None) -> Episode:
     lines: list[FoldLine] = (
         planned if task_id is None else fold_lines(find_task(task_id, episode.garment.kind), keypoints)
     )
-    segmenter = episode.experiment.create("segmenters", "segmenter")
-    try:
-        mask = segmenter.segment(episode.final)
-    except GroundingError:
-        return episode
     found = fidelity(
-        mask,
+        final_mask(episode),
         episode.final_state,
         episode.initial_state,
         episode.garment.mesh,

@@ -27,14 +27,14 @@ def bars(results: Results, column: str = "success %") -> Any:
     """
     from matplotlib.figure import Figure
 
-    from polyfold.results import SUCCESS
+    from polyfold.results import COLUMNS
 
     kinds, variants = results.kinds(), list(results.study.variants)
     figure = Figure(figsize=(2.0 + 1.6 * len(kinds), 3.2), layout="constrained")
     axes = figure.subplots()
     width = 0.8 / len(variants)
     for number, variant in enumerate(variants):
-        found = [estimate([SUCCESS[column](record) for record in results.of(variant, kind)]) for kind in kinds]
+        found = [estimate([COLUMNS[column](record) for record in results.of(variant, kind)]) for kind in kinds]
         at = [place + (number - (len(variants) - 1) / 2) * width for place in range(len(kinds))]
         means = [value.mean for value in found]
         spans = [[v.mean - v.low for v in found], [v.high - v.mean for v in found]]

@@ -6,6 +6,7 @@ its distribution, version and traceback, warned of once, and never takes the hos
 
 from __future__ import annotations
 
+import importlib
 import inspect
 import os
 import traceback
@@ -71,6 +72,7 @@ def refresh(third_party: bool | None = None) -> Catalog:
     global _third_party
     if third_party is not None:
         _third_party = third_party
+    importlib.invalidate_caches()
     catalog.cache_clear()
     _plugin_objects.clear()
     return catalog()

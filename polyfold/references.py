@@ -14,6 +14,7 @@ from polyfold import plugins
 from polyfold.config import Choice, Experiment
 from polyfold.episode import run_episode
 from polyfold.garments import Garment
+from polyfold.judging import final_mask
 from polyfold.scoring import Outcome
 from polyfold.store import versions
 from polyfold.tasks import Task
@@ -62,8 +63,10 @@ def reference_for(task: Task, garment: Garment, seed: int, simulator: Choice) ->
         task: the task.
         garment: the garment.
         seed: of the pose.
-        simulator: the simulator and its parameters.
+        simulator: the simulator and its parameters; one that injects faults names in ``faultless(config)`` the
+            simulator to use instead.
     """
+    simulator = _faultless(simulator)
     path = cache_folder() / "references" / f"{_key(task, garment, seed, simulator)}.npz"
     if path.exists():
         return _read(path)
@@ -71,11 +74,16 @@ def reference_for(task: Task, garment: Garment, seed: int, simulator: Choice) ->
     episode = run_episode(experiment, garment, "", seed, task=task)
     if episode.error is not None:
         raise episode.error
-    mask = experiment.create("segmenters", "segmenter").segment(episode.final)
+    mask = final_mask(episode)
     after = tuple(step.after for step in episode.steps)
     found = Reference(Outcome(episode.initial_state, episode.final_state, mask), after)
     _write(path, found)
     return found
+
+
+def _faultless(simulator: Choice) -> Choice:
+    cls = plugins.component_class("simulators", simulator.name)
+    return Choice(name=cls.faultless(cls.Config(**simulator.params))) if hasattr(cls, "faultless") else simulator
 
 
 def _key(task: Task, garment: Garment, seed: int, simulator: Choice) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 
 from polyfold.errors import ConfigError
 from polyfold.statistics import estimate, paired
+from polyfold.store import read_episodes
 from polyfold.study import Study
 from polyfold.tables import Table, shown
 
@@ -74,13 +75,10 @@ def open_results(out: str | Path) -> Results:
     config = json.loads(description.read_text("utf-8"))["config"]
     if "study" not in config:
         raise ConfigError(f"{out} holds no study; give the --out of an evaluation")
-    lines = (
-        (Path(out) / "episodes.jsonl").read_text("utf-8").split("\n") if (Path(out) / "episodes.jsonl").exists() else []
-    )
-    return Results(Study(**config["study"]), [json.loads(line) for line in lines[:-1]])
+    return Results(Study(**config["study"]), read_episodes(out))
 
 
-SUCCESS: dict[str, Callable[[Record], float | None]] = {
+COLUMNS: dict[str, Callable[[Record], float | None]] = {
     "MPPE [mm]": lambda record: record["metrics"]["mppe"],
     "mIoU": lambda record: record["metrics"]["miou"],
     "moved part [mm]": lambda record: record["metrics"]["moved-part"],
@@ -93,7 +91,7 @@ DIGITS = {"mIoU": 3}
 """Digits after the point, where they are not one."""
 
 
-def table(results: Results, columns: Sequence[str] = tuple(SUCCESS), groups: str = "kind") -> Table:
+def table(results: Results, columns: Sequence[str] = tuple(COLUMNS), groups: str = "kind") -> Table:
     """Variants by garment kind (``kind``), task type (``type``), task (``task``) or over all (``none``).
 
     Cells are means with 95 % bootstrap intervals; n is the number of episodes.
@@ -113,7 +111,7 @@ def table(results: Results, columns: Sequence[str] = tuple(SUCCESS), groups: str
 
 
 def _mean(column: str, records: Sequence[Record]) -> str:
-    return shown(estimate([SUCCESS[column](record) for record in records]), DIGITS.get(column, 1))
+    return shown(estimate([COLUMNS[column](record) for record in records]), DIGITS.get(column, 1))
 
 
 def _marked(variant: str, records: Sequence[Record]) -> str:
@@ -144,13 +142,13 @@ def compare(results: Results, variant: str, baseline: str) -> Table:
         keys = [key for key in shared if kind in ("all", ours[key]["garment"])]
         if keys:
             pair = [ours[key] for key in keys], [theirs[key] for key in keys]
-            rows.append([kind, str(len(keys)), *(_difference(column, *pair) for column in SUCCESS)])
+            rows.append([kind, str(len(keys)), *(_difference(column, *pair) for column in COLUMNS)])
     note = f"{variant} − {baseline}, the same episodes; mean [95 % bootstrap interval]."
-    return Table(["kind", "n", *SUCCESS], rows, note)
+    return Table(["kind", "n", *COLUMNS], rows, note)
 
 
 def _difference(column: str, ours: Sequence[Record], theirs: Sequence[Record]) -> str:
-    value = SUCCESS[column]
+    value = COLUMNS[column]
     found = paired([value(record) for record in ours], [value(record) for record in theirs])
     return shown(found, DIGITS.get(column, 1), signed=True)
 

@@ -16,7 +16,7 @@ from typing import Any
 
 from polyfold.errors import ConfigError
 
-__all__ = ["SCHEMA_VERSION", "RunDirectory", "versions", "write_atomically"]
+__all__ = ["SCHEMA_VERSION", "RunDirectory", "read_episodes", "versions", "write_atomically"]
 
 SCHEMA_VERSION = 1
 
@@ -93,11 +93,15 @@ class RunDirectory:
 
     def episodes(self) -> dict[str, dict[str, Any]]:
         """Finished episodes by key, in the order they finished."""
-        if not self._episodes.exists():
-            return {}
-        lines = self._episodes.read_text("utf-8").splitlines()
-        records = (json.loads(line) for line in lines)
-        return {record["key"]: record for record in records}
+        return {record["key"]: record for record in read_episodes(self.path)}
+
+
+def read_episodes(path: str | Path) -> list[dict[str, Any]]:
+    """The finished episodes of a run directory, which may be running still: a half-written last line is left out."""
+    episodes = Path(path) / "episodes.jsonl"
+    if not episodes.exists():
+        return []
+    return [json.loads(line) for line in episodes.read_text("utf-8").split("\n")[:-1]]
 
 
 def _difference(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:

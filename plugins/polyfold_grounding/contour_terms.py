@@ -56,18 +56,29 @@ def _closest(vertices, x, y):
 
 
 @njit(cache=True)
-def contour_cost(vertices, covered, samples, field, margin, delta, count):
-    """Mean pseudo-Huber cost [px²] and mean distance [px], each half model to cloth and half cloth to model."""
-    lengths = _edge_lengths(vertices)
+def _spread(lengths, count):
+    """``count`` points evenly along a closed polygon: the edge that each lies on and its share of that edge."""
+    edges, shares = np.empty(count, np.int64), np.empty(count)
     spacing = lengths.sum() / count
-    cost = chamfer = 0.0
     position = 0.5 * spacing
     e = 0
-    for _ in range(count):
+    for k in range(count):
         while position > lengths[e] and e < len(lengths) - 1:
             position -= lengths[e]
             e += 1
-        share = min(position / max(lengths[e], 1e-9), 1.0)
+        edges[k], shares[k] = e, min(position / max(lengths[e], 1e-9), 1.0)
+        position += spacing
+    return edges, shares
+
+
+@njit(cache=True)
+def contour_cost(vertices, covered, samples, field, margin, delta, count):
+    """Mean pseudo-Huber cost [px²] and mean distance [px], each half model to cloth and half cloth to model."""
+    lengths = _edge_lengths(vertices)
+    edges, shares = _spread(lengths, count)
+    cost = chamfer = 0.0
+    for k in range(count):
+        e, share = edges[k], shares[k]
         f = (e + 1) % len(lengths)
         x = vertices[e, 0] + share * (vertices[f, 0] - vertices[e, 0])
         y = vertices[e, 1] + share * (vertices[f, 1] - vertices[e, 1])
@@ -76,7 +87,6 @@ def contour_cost(vertices, covered, samples, field, margin, delta, count):
             r *= COVERED
         cost += delta * delta * (np.sqrt(1 + (r / delta) ** 2) - 1) / count
         chamfer += abs(r) / count
-        position += spacing
     for k in range(len(samples)):
         _, _, d2 = _closest(vertices, samples[k, 0], samples[k, 1])
         cost += delta * delta * (np.sqrt(1 + d2 / delta**2) - 1) / len(samples)
@@ -105,15 +115,10 @@ def contour_normal_equations(vertices, covered, samples, field, margin, delta, c
     lengths = _edge_lengths(vertices)
     size = 2 * len(vertices)
     gradient, hessian = np.zeros(size), np.zeros((size, size))
-    spacing = lengths.sum() / count
+    edges, shares = _spread(lengths, count)
     cost = 0.0
-    position = 0.5 * spacing
-    e = 0
-    for _ in range(count):
-        while position > lengths[e] and e < len(lengths) - 1:
-            position -= lengths[e]
-            e += 1
-        share = min(position / max(lengths[e], 1e-9), 1.0)
+    for k in range(count):
+        e, share = edges[k], shares[k]
         f = (e + 1) % len(lengths)
         x = vertices[e, 0] + share * (vertices[f, 0] - vertices[e, 0])
         y = vertices[e, 1] + share * (vertices[f, 1] - vertices[e, 1])
@@ -123,7 +128,6 @@ def contour_normal_equations(vertices, covered, samples, field, margin, delta, c
         root = np.sqrt(1 + (r / delta) ** 2)
         cost += 0.5 * delta * delta * (root - 1) / count
         _add(gradient, hessian, e, f, share, gx, gy, r, 0.5 / (root * count))
-        position += spacing
     for k in range(len(samples)):
         x, y = samples[k, 0], samples[k, 1]
         e, share, d2 = _closest(vertices, x, y)

@@ -30,6 +30,11 @@ class FaultySimulator:
         shift_m: float = Field(0.03, ge=0, description="largest displacement [m]")
         turn_deg: float = Field(10.0, ge=0, description="largest turn of a displaced garment [deg]")
 
+    @classmethod
+    def faultless(cls, config: Config) -> str:
+        """The simulator that references are made in: they must not have the faults."""
+        return config.inner
+
     def __init__(self, config: Config) -> None:
         self._config = config
         self._inner: Any = create("simulators", config.inner)

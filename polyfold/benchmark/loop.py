@@ -109,7 +109,7 @@ def table(records: list[dict[str, Any]]) -> str:
     ]
     for job, agent, rows in _groups(records):
         iou = np.array([row["fidelity"]["iou"] for row in rows])
-        error = np.array([row["fidelity"]["moved_part_error_mm"] or np.nan for row in rows])
+        error = np.array([row["fidelity"]["moved_part_error_mm"] for row in rows], float)
         good = rows[0]["good"]
         failures = sum(row["failure"] is not None for row in rows)
         seconds = np.mean([sum(row["seconds"].values()) for row in rows])

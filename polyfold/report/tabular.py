@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from polyfold.results import SUCCESS, Results, compare
+from polyfold.results import COLUMNS, Results, compare
 from polyfold.tables import Table
 
 __all__ = ["comparison_html", "success_first", "table_html"]
@@ -34,7 +34,7 @@ def success_first(table: Table) -> Table:
 def _rank(header: str) -> int:
     if header.endswith("%"):
         return 1
-    return 2 if header in SUCCESS else 0
+    return 2 if header in COLUMNS else 0
 
 
 def table_html(table: Table, columns_of_text: int, differences: bool = False) -> Markup:

@@ -5,10 +5,14 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 
 import polyfold
-from polyfold.errors import ConfigError
+from polyfold.config import Choice
+from polyfold.errors import ConfigError, GroundingError
+from polyfold.judging import suite
+from polyfold.references import reference_for
 from polyfold.results import open_results
 from polyfold.runner import evaluate
 from polyfold.study import cells, experiment_of
@@ -121,3 +125,29 @@ def test_a_component_of_a_notebook_is_refused_by_workers_with_the_reason(tmp_pat
             evaluate(polyfold.Study(**SMALL), tmp_path, workers=2, progress=False)
     finally:
         polyfold.plugins.unregister("policies", "local")
+
+
+def test_cloth_that_is_out_of_sight_scores_nothing_and_the_study_goes_on(tmp_path):
+    class Blind:
+        """Sees no cloth, as when it was carried out of the picture."""
+
+        def segment(self, observation):
+            raise GroundingError("no cloth is in sight; put it back on the table")
+
+    polyfold.register("segmenters", "blind", Blind)
+    try:
+        study = polyfold.Study(**SMALL, base={"agent": "noop", "segmenter": "blind"})
+        records = evaluate(study, tmp_path, progress=False)
+    finally:
+        polyfold.plugins.unregister("segmenters", "blind")
+    assert [record["metrics"]["miou"] for record in records] == [0.0] * 8
+    assert not any(record["success"]["polyfold"] for record in records)
+
+
+def test_references_have_no_faults():
+    task = suite("polyfold70").task("square-corner-top_left")
+    cloth = polyfold.garment("square", seed=2000, edge_length=0.03)
+    plain = reference_for(task, cloth, 2000, Choice(name="xpbd"))
+    faulty = reference_for(task, cloth, 2000, Choice(name="faulty", params={"miss": 1.0}))
+    assert (plain.outcome.end.positions == faulty.outcome.end.positions).all()
+    assert np.abs(plain.outcome.end.positions - plain.outcome.start.positions).max() > 0.05
