@@ -105,7 +105,11 @@ def register_garments(register: Register) -> None:
 
 @hookspec
 def register_tasks(register: Register) -> None:
-    """Register task suites: ``target`` is ``"package:path/within/it.toml"``, read by :mod:`polyfold.tasks`."""
+    """Register task suites: ``target`` is ``"package:path/within/it.toml"``.
+
+    A suite holds tasks, whose folds are given (:mod:`polyfold.tasks`), goals, which say what counts as done and leave
+    the folds to the planner (:mod:`polyfold.goals`), or both. ``polyfold evaluate`` runs it when a study names it.
+    """
 
 
 @hookspec

@@ -10,18 +10,58 @@ from numpy.typing import NDArray
 
 from polyfold import plugins
 from polyfold.episode import Episode
-from polyfold.errors import ConfigError, GroundingError
+from polyfold.errors import ConfigError, GroundingError, PluginError
+from polyfold.goals import OpenTask
 from polyfold.ideal import fidelity
 from polyfold.tasks import Suite, Task, fold_lines, load_suite, recognise
 from polyfold.types import FoldLine
 
-__all__ = ["final_mask", "find_task", "judge", "known_tasks", "suite"]
+__all__ = ["accepted_tasks", "final_mask", "find_task", "judge", "known_tasks", "suite"]
 
 
 @cache
 def suite(name: str) -> Suite:
-    """A registered task suite by name. Raises PluginError if there is none."""
+    """A registered task suite by name, its goals checked against the suite whose tasks they accept.
+
+    Raises:
+        PluginError: if there is no such suite.
+        ConfigError: if its file is wrong.
+    """
+    found = _loaded(name)
+    for goal in found.goals:
+        _accepted(name, found, goal)
+    return found
+
+
+def accepted_tasks(name: str, goal: OpenTask) -> tuple[Task, ...]:
+    """The tasks whose end states count as reaching a goal of the registered suite ``name``; often none."""
+    return _accepted(name, suite(name), goal)
+
+
+@cache
+def _loaded(name: str) -> Suite:
     return load_suite(str(plugins.find("tasks", name).target))
+
+
+def _accepted(name: str, found: Suite, goal: OpenTask) -> tuple[Task, ...]:
+    if not goal.accept:
+        return ()
+    where = str(plugins.find("tasks", name).target)
+    try:
+        source = found if found.accept_from in (name, found.name) else _loaded(found.accept_from)
+    except PluginError as error:
+        raise ConfigError(f"{where}: goal {goal.id}, field accept: {error}; set accept_from to such a suite") from error
+    try:
+        tasks = tuple(source.task(task_id) for task_id in goal.accept)
+    except ConfigError as error:
+        raise ConfigError(f"{where}: goal {goal.id}, field accept: {error}") from error
+    for task in tasks:
+        if task.garment != goal.garment:
+            raise ConfigError(
+                f"{where}: goal {goal.id}, field accept: {task.id} is for a {task.garment}, "
+                f"the goal for a {goal.garment}; accept tasks of its own garment"
+            )
+    return tasks
 
 
 def known_tasks(kind: str) -> list[Task]:

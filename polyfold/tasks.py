@@ -1,5 +1,8 @@
 """Folding tasks as data: a suite file names, for every task, its folds on the flat garment's keypoints.
 
+A goal that leaves the folds open is a ``[[goal]]`` instead of a ``[[task]]``; :mod:`polyfold.goals` describes it. A
+suite may hold both.
+
 A suite is a TOML file::
 
     schema_version = 1
@@ -22,17 +25,19 @@ best, and the first point of each pair is on the lifted side. ``crease`` gives t
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from polyfold.errors import ConfigError
+from polyfold.goals import OpenTask
 from polyfold.types import FoldLine
 
 __all__ = ["Fold", "Suite", "Task", "fold_lines", "load_suite", "mirror_line", "recognise"]
@@ -93,14 +98,24 @@ class Task(BaseModel):
 
 
 class Suite(BaseModel):
-    """A named list of tasks."""
+    """A named list of tasks, of open tasks, or of both.
+
+    Attributes:
+        name: what it is called in messages.
+        description: one line.
+        accept_from: name of the registered suite whose tasks the goals accept; its own name for its own tasks.
+        tasks: the tasks with given folds (``[[task]]``).
+        goals: the open tasks (``[[goal]]``).
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     schema_version: Literal[1]
     name: str
     description: str = ""
-    tasks: tuple[Task, ...] = Field(alias="task", min_length=1)
+    accept_from: str = "polyfold70"
+    tasks: tuple[Task, ...] = Field((), alias="task")
+    goals: tuple[OpenTask, ...] = Field((), alias="goal")
 
     @model_validator(mode="before")
     @classmethod
@@ -114,35 +129,52 @@ class Suite(BaseModel):
             suite["task"] = [_substituted(task, points) for task in suite["task"]]
         return suite
 
-    @field_validator("tasks")
-    @classmethod
-    def _unique(cls, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
-        seen: set[str] = set()
-        for task in tasks:
-            if task.id in seen:
-                raise ValueError(f"the task id {task.id!r} is used twice; rename one")
-            seen.add(task.id)
-        return tasks
+    @model_validator(mode="after")
+    def _something_with_unique_ids(self) -> Suite:
+        if not self.entries:
+            raise ValueError("the suite is empty; give a [[task]] or a [[goal]]")
+        times = Counter(entry.id for entry in self.entries)
+        for entry_id, count in times.items():
+            if count > 1:
+                raise ValueError(f"the id {entry_id!r} is used twice; rename one")
+        return self
+
+    @property
+    def entries(self) -> tuple[Task | OpenTask, ...]:
+        """All that can be asked for: the tasks, then the open tasks."""
+        return (*self.tasks, *self.goals)
 
     def task(self, task_id: str) -> Task:
         """The task of this id. Raises ConfigError with the nearest ids when there is none."""
-        for task in self.tasks:
-            if task.id == task_id:
-                return task
-        near = get_close_matches(task_id, [task.id for task in self.tasks], n=3)
-        hint = f"did you mean {' or '.join(near)}?" if near else "see `polyfold tasks`"
-        raise ConfigError(f"the suite {self.name} has no task {task_id!r}; {hint}")
+        return _of_id(self.tasks, task_id, self.name)
+
+    def entry(self, entry_id: str) -> Task | OpenTask:
+        """The task or open task of this id. Raises ConfigError with the nearest ids when there is none."""
+        return _of_id(self.entries, entry_id, self.name)
 
     def for_garment(self, kind: str) -> tuple[Task, ...]:
         """The tasks on garments of this kind."""
         return tuple(task for task in self.tasks if task.garment == kind)
 
 
+_Entry = TypeVar("_Entry", bound="Task | OpenTask")
+
+
+def _of_id(entries: Sequence[_Entry], entry_id: str, suite: str) -> _Entry:
+    for entry in entries:
+        if entry.id == entry_id:
+            return entry
+    known = [entry.id for entry in entries]
+    near = get_close_matches(entry_id, known, n=3)
+    hint = f"did you mean {' or '.join(near)}?" if near else f"it has {', '.join(known) or 'none'}"
+    raise ConfigError(f"the suite {suite} has no task {entry_id!r}; {hint}")
+
+
 def load_suite(source: str | Path) -> Suite:
     """Read a suite from a path, or from ``"package:path/within/it.toml"`` as plugins register it.
 
     Raises:
-        ConfigError: naming the file, the task and the field that is wrong.
+        ConfigError: naming the file, the task or goal and the field that is wrong.
     """
     where, text = _read(source)
     try:
@@ -305,13 +337,14 @@ def _read(source: str | Path) -> tuple[str, str]:
 
 
 def _first_problem(error: ValidationError, content: Mapping[str, Any]) -> str:
-    """The first validation problem as one sentence with the task and the field."""
+    """The first validation problem as one sentence with the task or goal and the field."""
     problem = error.errors()[0]
     place = list(problem["loc"])
     message = problem["msg"].removeprefix("Value error, ")
-    if len(place) >= 2 and place[0] == "task" and isinstance(place[1], int):
-        task = content["task"][place[1]]
-        name = task.get("id", f"number {place[1] + 1}") if isinstance(task, dict) else f"number {place[1] + 1}"
-        field = ".".join(str(part) for part in place[2:]) or "the task itself"
-        return f"task {name}, field {field}: {message}; see polyfold.tasks for the format"
-    return f"field {'.'.join(str(part) for part in place)}: {message}; see polyfold.tasks for the format"
+    if len(place) >= 2 and place[0] in ("task", "goal") and isinstance(place[1], int):
+        entry = content[place[0]][place[1]]
+        name = entry.get("id", f"number {place[1] + 1}") if isinstance(entry, dict) else f"number {place[1] + 1}"
+        field = ".".join(str(part) for part in place[2:]) or f"the {place[0]} itself"
+        return f"{place[0]} {name}, field {field}: {message}; see polyfold.{place[0]}s for the format"
+    field = ".".join(str(part) for part in place) or "the suite itself"
+    return f"field {field}: {message}; see polyfold.tasks for the format"

@@ -45,5 +45,6 @@ def register_metrics(register):
 
 @hookimpl
 def register_tasks(register):
-    """Register the suite."""
+    """Register the suites."""
     register("polyfold70", "polyfold_standard:tasks/polyfold70.toml", "the 70 tasks of the paper's Table I")
+    register("ambiguous", "polyfold_standard:tasks/ambiguous.toml", "46 goals that leave the folds to the planner")
