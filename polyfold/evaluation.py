@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import resource
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -12,10 +13,11 @@ import numpy as np
 
 from polyfold import plugins
 from polyfold.attribution import attribute
-from polyfold.episode import Episode, run_episode
+from polyfold.episode import Episode, Failure, run_episode
+from polyfold.errors import SimulationError
 from polyfold.garments import Garment
 from polyfold.judging import final_mask, suite
-from polyfold.references import Reference, reference_for
+from polyfold.references import Reference, ideal_reference, reference_for
 from polyfold.scoring import PRESETS, Outcome, succeeded
 from polyfold.study import Cell, Study, experiment_of
 from polyfold.tasks import Task, fold_lines
@@ -38,7 +40,7 @@ def evaluate_cell(study: Study, cell: Cell) -> Record:
     oracle.
     """
     task = suite(study.suite).task(cell.task)
-    return _record(cell, task, *_run(study, cell, task))
+    return _record(study, cell, task, *_run(study, cell, task))
 
 
 def evaluate_with_picture(study: Study, cell: Cell, pictures: str) -> tuple[Record, bytes | None]:
@@ -52,30 +54,35 @@ def evaluate_with_picture(study: Study, cell: Cell, pictures: str) -> tuple[Reco
     """
     task = suite(study.suite).task(cell.task)
     episode, reference = _run(study, cell, task)
-    record = _record(cell, task, episode, reference)
+    record = _record(study, cell, task, episode, reference)
     first = cell.garment_seed == study.first_seed and cell.wording == 0
     if pictures == "all" or (pictures == "failed" and (first or not record["success"]["polyfold"])):
-        return record, thumbnail(episode, reference.outcome.mask)
+        return record, thumbnail(episode, None if reference is None else reference.outcome.mask)
     return record, None
 
 
-def _run(study: Study, cell: Cell, task: Task) -> tuple[Episode, Reference]:
+def _run(study: Study, cell: Cell, task: Task) -> tuple[Episode, Reference | None]:
+    """The episode and what it is compared with; None where the oracle itself failed, which ends no study."""
     garment = _garment(cell.garment, cell.garment_seed, study.edge_length)
     experiment = experiment_of(study, cell.variant)
-    reference = reference_for(task, garment, cell.garment_seed, experiment.simulator)
     instruction = task.instructions[cell.wording] if task.instructions else ""
     episode = run_episode(experiment, garment, instruction, cell.garment_seed, task=task, agent_seed=cell.seed)
-    return episode, reference
+    if study.reference == "ideal":
+        return episode, ideal_reference(task, garment, episode.initial_state)
+    try:
+        return episode, reference_for(task, garment, cell.garment_seed, experiment.simulator)
+    except SimulationError as error:
+        return replace(episode, failure=Failure("infrastructure", f"the oracle failed: {error}")), None
 
 
-def _record(cell: Cell, task: Task, episode: Episode, reference: Reference) -> Record:
-    values = _scores(episode, reference)
-    lines = fold_lines(task, episode.initial_state.keypoint_pixels())
+def _record(study: Study, cell: Cell, task: Task, episode: Episode, reference: Reference | None) -> Record:
+    values = _scores(study, episode, reference)
     success = {preset: episode.failure is None and succeeded(values, preset) for preset in PRESETS}
     return {
         "variant": cell.variant,
         "task": cell.task,
         "type": task.type,
+        "split": task.split,
         "steps_wanted": len(task.steps),
         "garment": cell.garment,
         "garment_seed": cell.garment_seed,
@@ -88,22 +95,33 @@ def _record(cell: Cell, task: Task, episode: Episode, reference: Reference) -> R
         "step_errors_mm": _step_errors(episode, reference),
         "success": success,
         "failure": None if episode.failure is None else vars(episode.failure),
-        "cause": None if success["polyfold"] else attribute(episode, lines, reference),
+        "cause": None if success["polyfold"] else _cause(episode, task, reference),
         "privileged": episode.privileged,
         "seconds": {stage: round(spent, 4) for stage, spent in episode.seconds.items()},
         "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
     }
 
 
-def _scores(episode: Episode, reference: Reference) -> Mapping[str, float]:
+def _cause(episode: Episode, task: Task, reference: Reference | None) -> str:
+    if reference is None:
+        return "infrastructure"
+    return attribute(episode, fold_lines(task, episode.initial_state.keypoint_pixels()), reference)
+
+
+def _scores(study: Study, episode: Episode, reference: Reference | None) -> Mapping[str, float]:
+    if reference is None:
+        return dict.fromkeys(plugins.names("metrics"), math.nan)
     result = Outcome(episode.initial_state, episode.final_state, final_mask(episode))
     return {
-        name: plugins.create("metrics", name).score(result, [reference.outcome]) for name in plugins.names("metrics")
+        name: plugins.create("metrics", name, study.metrics.get(name)).score(result, [reference.outcome])
+        for name in plugins.names("metrics")
     }
 
 
-def _step_errors(episode: Episode, reference: Reference) -> list[float | None]:
-    """Mean particle error [mm] after each of the episode's own steps, where the oracle has such a step."""
+def _step_errors(episode: Episode, reference: Reference | None) -> list[float | None]:
+    """Mean particle error [mm] after each of the episode's own steps, where the reference has such a step."""
+    if reference is None:
+        return []
     errors = []
     for step, wanted in zip(episode.settled(), reference.after, strict=False):
         distance = np.linalg.norm(step.after.positions - wanted.positions, axis=1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -14,13 +15,14 @@ from polyfold import plugins
 from polyfold.config import Choice, Experiment
 from polyfold.episode import run_episode
 from polyfold.garments import Garment
+from polyfold.ideal import fold_ideally
 from polyfold.judging import final_mask
 from polyfold.scoring import Outcome
 from polyfold.store import versions
-from polyfold.tasks import Task
+from polyfold.tasks import Task, fold_lines
 from polyfold.types import Camera, SimState
 
-__all__ = ["Reference", "cache_folder", "reference_for"]
+__all__ = ["Reference", "cache_folder", "ideal_reference", "reference_for"]
 
 
 class Reference:
@@ -63,8 +65,8 @@ def reference_for(task: Task, garment: Garment, seed: int, simulator: Choice) ->
         task: the task.
         garment: the garment.
         seed: of the pose.
-        simulator: the simulator and its parameters; one that injects faults names in ``faultless(config)`` the
-            simulator to use instead.
+        simulator: the simulator and its parameters; one that injects faults or noise says in ``faultless(config)``
+            which simulator to use instead, as a name and parameters.
     """
     simulator = _faultless(simulator)
     path = cache_folder() / "references" / f"{_key(task, garment, seed, simulator)}.npz"
@@ -81,9 +83,26 @@ def reference_for(task: Task, garment: Garment, seed: int, simulator: Choice) ->
     return found
 
 
+def ideal_reference(task: Task, garment: Garment, flat: SimState) -> Reference:
+    """The flat garment folded geometrically along the task's lines: no simulator and no policy has a part in it.
+
+    Args:
+        task: the task.
+        garment: the garment.
+        flat: the state before the first fold.
+    """
+    lines = fold_lines(task, flat.keypoint_pixels())
+    folded = [fold_ideally(flat, garment.mesh, lines[: count + 1]) for count in range(len(lines))]
+    after = tuple(replace(flat, positions=ideal.positions) for ideal in folded)
+    return Reference(Outcome(flat, after[-1], folded[-1].mask), after)
+
+
 def _faultless(simulator: Choice) -> Choice:
     cls = plugins.component_class("simulators", simulator.name)
-    return Choice(name=cls.faultless(cls.Config(**simulator.params))) if hasattr(cls, "faultless") else simulator
+    if not hasattr(cls, "faultless"):
+        return simulator
+    name, params = cls.faultless(cls.Config(**simulator.params))
+    return Choice(name=name, params=params)
 
 
 def _key(task: Task, garment: Garment, seed: int, simulator: Choice) -> str:

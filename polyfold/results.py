@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from polyfold.store import read_episodes
 from polyfold.study import Study
 from polyfold.tables import Table, shown
 
-__all__ = ["Results", "compare", "open_results", "run", "table"]
+__all__ = ["Results", "compare", "noise_floor", "open_results", "run", "table"]
 
 Record = Mapping[str, Any]
 
@@ -87,31 +87,91 @@ COLUMNS: dict[str, Callable[[Record], float | None]] = {
 }
 """Columns of the tables: what is averaged."""
 
+REFERENCES = {
+    "oracle": "the oracle from the same start",
+    "ideal": "the flat garment folded geometrically along the task's lines",
+}
+"""What results are compared with, in words."""
+
 DIGITS = {"mIoU": 3}
 """Digits after the point, where they are not one."""
 
 
-def table(results: Results, columns: Sequence[str] = tuple(COLUMNS), groups: str = "kind") -> Table:
-    """Variants by garment kind (``kind``), task type (``type``), task (``task``) or over all (``none``).
+def table(
+    results: Results, columns: Sequence[str] = tuple(COLUMNS), groups: str = "kind", noise: Results | None = None
+) -> Table:
+    """Variants by garment kind (``kind``), task type (``type``), ``task``, ``split``, ``step``, or all (``none``).
 
     Cells are means with 95 % bootstrap intervals; n is the number of episodes.
+
+    Args:
+        results: what to tabulate.
+        columns: of :data:`COLUMNS`, or names of metrics.
+        groups: what makes a row; ``step`` gives the mean particle error after each of the episode's own folds.
+        noise: a study of what differs without meaning; it becomes a footnote, see :func:`noise_floor`.
     """
-    keys = {"kind": "garment", "type": "type", "task": "task", "none": None}
+    if groups == "step":
+        return _by_step(results)
+    keys = {"kind": "garment", "type": "type", "task": "task", "split": "split", "none": None}
     if groups not in keys:
-        raise ConfigError(f"can't group by {groups!r}; choose one of {', '.join(keys)}")
+        raise ConfigError(f"can't group by {groups!r}; choose one of {', '.join(keys)}, step")
     rows = []
     for variant in results.study.variants:
         for group, records in _grouped(results, variant, keys[groups]):
             cells = [_mean(column, records) for column in columns]
             rows.append([_marked(variant, records), group, str(len(records)), *cells])
-    note = f"{results.study.name}: mean [95 % bootstrap interval]; reference: the oracle from the same start."
+    rows += _published(results, columns, dict.fromkeys(row[1] for row in rows))
+    note = f"{results.study.name}: mean [95 % bootstrap interval]; reference: {REFERENCES[results.study.reference]}."
     if any(record["privileged"] for record in results.records):
         note += " * privileged: sees more than the camera."
+    if noise is not None:
+        note += " " + noise_floor(noise)
     return Table(["variant", groups if groups != "none" else "", "n", *columns], rows, note)
 
 
+def noise_floor(noise: Results) -> str:
+    """How far results differ that differ in nothing that matters, as a sentence.
+
+    Args:
+        noise: a study of the oracle with its particles, contacts and constraints in other orders.
+    """
+    columns = ", ".join(f"{column} {_mean(column, noise.records)}" for column in COLUMNS)
+    return f"Noise floor, the oracle repeated with particles and contacts in another order (n={len(noise.records)}): {columns}."
+
+
+def _by_step(results: Results) -> Table:
+    most = max((len(record["step_errors_mm"]) for record in results.records), default=0)
+    rows = []
+    for variant in results.study.variants:
+        for kind, records in _grouped(results, variant, "garment"):
+            errors = [record["step_errors_mm"] for record in records]
+            after = [[found[step] for found in errors if len(found) > step] for step in range(most)]
+            cells = [f"{shown(estimate(values))} (n={len(values)})" if values else "–" for values in after]
+            rows.append([_marked(variant, records), kind, *cells])
+    note = f"{results.study.name}: mean particle error [mm] after each fold of the episode's own."
+    return Table(["variant", "kind", *(f"step {step + 1}" for step in range(most))], rows, note)
+
+
+def _published(results: Results, columns: Sequence[str], groups: Iterable[str]) -> list[list[str]]:
+    """Rows of what others published, which is success alone."""
+    return [
+        [label, kind, "–", *(f"{figures[kind]:.1f}" if column == "success %" else "–" for column in columns)]
+        for label, figures in results.study.published.items()
+        for kind in groups
+        if kind in figures
+    ]
+
+
 def _mean(column: str, records: Sequence[Record]) -> str:
-    return shown(estimate([COLUMNS[column](record) for record in records]), DIGITS.get(column, 1))
+    return shown(estimate([_value(column, record) for record in records]), DIGITS.get(column, 1))
+
+
+def _value(column: str, record: Record) -> float | None:
+    if column in COLUMNS:
+        return COLUMNS[column](record)
+    if column in record["metrics"]:
+        return record["metrics"][column]
+    raise ConfigError(f"there is no column {column!r}; choose from {', '.join([*COLUMNS, *record['metrics']])}")
 
 
 def _marked(variant: str, records: Sequence[Record]) -> str:
@@ -125,8 +185,9 @@ def _grouped(results: Results, variant: str, key: str | None) -> list[tuple[str,
     elif key is None:
         found = [("all", results.of(variant))]
     else:
-        names = dict.fromkeys(record[key] for record in results.records)
-        found = [(name, [r for r in results.of(variant) if r[key] == name]) for name in names]
+        names = dict.fromkeys(record.get(key) for record in results.records)
+        found = [(name or "–", [r for r in results.of(variant) if r.get(key) == name]) for name in names]
+        found.append(("all", results.of(variant)))
     return [(name, records) for name, records in found if records]
 
 

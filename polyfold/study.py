@@ -40,6 +40,12 @@ class Study(BaseModel):
         instructions: ``first`` asks with the first wording, ``in-turn`` with the next one on each garment, ``all`` with
             each of them.
         edge_length: mesh size [m].
+        split: only the tasks that learning baselines may train on (``seen``), or only the others (``unseen``).
+        steps: only tasks of one fold (``single``), or only those of several (``multi``).
+        reference: what results are compared with: the ``oracle``'s in the same simulator, or the ``ideal``, the flat
+            garment folded geometrically, which owes nothing to any simulator or policy.
+        metrics: parameters of metrics by name, for example ``{"mppe": {"align": true}}``.
+        published: success [%] that others published, by label and row (``tshirt``, ``all``, ``seen``), for the tables.
         seed: of the run; part of every episode's seed.
         base: the experiment that variants start from, as dotted paths or nested tables.
         variants: name -> overrides by dotted path, for example ``{"farthest": {"policy": "farthest"}}``.
@@ -54,6 +60,11 @@ class Study(BaseModel):
     first_seed: int = Field(0, ge=0)
     instructions: Literal["first", "in-turn", "all"] = "in-turn"
     edge_length: float = Field(0.0155, gt=0.004, le=0.05)
+    split: Literal["seen", "unseen"] | None = None
+    steps: Literal["single", "multi"] | None = None
+    reference: Literal["oracle", "ideal"] = "oracle"
+    metrics: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    published: dict[str, dict[str, float]] = Field(default_factory=dict)
     seed: int = 0
     base: Overrides = Field(default_factory=dict)
     variants: dict[str, Overrides] = Field(default_factory=lambda: {"polyfold": {}}, min_length=1)
@@ -182,8 +193,17 @@ def _check_parameters(experiment: Experiment, variant: str) -> None:
                 )
 
 
+def _check_metrics(study: Study) -> None:
+    """Raises ConfigError or PluginError if parameters are given to a metric that has none or does not exist."""
+    from polyfold import plugins
+
+    for name, params in study.metrics.items():
+        plugins.create("metrics", name, params)
+
+
 def cells(study: Study) -> Iterator[Cell]:
     """Every episode of a study, in a fixed order that mixes kinds, so that progress is representative."""
+    _check_metrics(study)
     chosen = _chosen_tasks(study)
     for index in range(study.garments):
         for task, variant in itertools.product(chosen, study.variants):
@@ -201,7 +221,21 @@ def _chosen_tasks(study: Study) -> list[Task]:
             raise ConfigError(
                 f"no task of {study.suite!r} matches {pattern!r}; {_nearest(pattern, [task.id for task in tasks])}"
             )
-    return [task for task in tasks if any(fnmatch.fnmatch(task.id, pattern) for pattern in study.tasks)]
+    chosen = [task for task in tasks if _is_chosen(study, task)]
+    if not chosen:
+        raise ConfigError(
+            f"no task of {study.suite!r} is left by tasks={list(study.tasks)}, split={study.split!r} and "
+            f"steps={study.steps!r}; widen one of them"
+        )
+    return chosen
+
+
+def _is_chosen(study: Study, task: Task) -> bool:
+    return (
+        any(fnmatch.fnmatch(task.id, pattern) for pattern in study.tasks)
+        and study.split in (None, task.split)
+        and study.steps in (None, "single" if len(task.steps) == 1 else "multi")
+    )
 
 
 def _wordings(study: Study, task: Task, index: int) -> Sequence[int]:

@@ -7,26 +7,42 @@ from typing import ClassVar
 
 import numpy as np
 
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
 from polyfold.geometry import contour_of
-from polyfold.interfaces import Goal, Policy, Segmenter
-from polyfold.types import Decision, Observation, Scene, Subgoal
+from polyfold.interfaces import Goal, Grounding, Policy, Segmenter
+from polyfold.types import Decision, FoldLine, Observation, Scene, Subgoal
 
 __all__ = ["Oracle"]
 
 
 class Oracle:
-    """Folds along the ideal lines from ground-truth keypoints, seen from nowhere; picks chosen by the policy."""
+    """Folds along the ideal lines from ground-truth keypoints, seen from nowhere; picks chosen by the policy.
+
+    With another policy than the default it is the policy ablation with oracle fold lines (paper, Table IV c).
+    """
 
     requires: ClassVar[frozenset[str]] = frozenset({"fold_lines"})
-    uses: ClassVar[tuple[str, ...]] = ("segmenter", "policy")
+    uses: ClassVar[tuple[str, ...]] = ("segmenter", "grounding", "policy")
 
-    def __init__(self, segmenter: Segmenter, policy: Policy) -> None:
+    class Config(BaseModel):
+        """Parameters."""
+
+        model_config = ConfigDict(frozen=True, extra="forbid")
+
+        ground: bool = Field(False, description="ground every picture too, for policies that pick at polygon vertices")
+
+    def __init__(self, config: Config, segmenter: Segmenter, grounding: Grounding, policy: Policy) -> None:
+        self._ground = config.ground
         self._segmenter = segmenter
+        self._grounding = grounding
         self._policy = policy
 
     def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
         """Take the lines from the guidance."""
-        self._kind = goal.kind
+        self._template = goal.template
+        self._before: tuple[Scene, FoldLine] | None = None
         self._rng = np.random.default_rng(goal.seed)
         self._pending = list(goal.fold_lines or ())
         return ()
@@ -36,7 +52,12 @@ class Oracle:
         if not self._pending:
             return None
         line = self._pending.pop(0)
-        mask = self._segmenter.segment(observation)
-        size = (observation.camera.width, observation.camera.height)
-        scene = Scene(self._kind, size, mask, contour_of(mask), None, "{}")
+        scene = self._seen(observation, self._segmenter.segment(observation))
+        self._before = scene, line
         return Decision(self._policy.act(line, scene, self._rng), fold_line=line, scene=scene)
+
+    def _seen(self, observation: Observation, mask: NDArray[np.bool_]) -> Scene:
+        if self._ground:
+            return self._grounding.ground(observation, mask, self._template, *(self._before or (None, None)))
+        size = (observation.camera.width, observation.camera.height)
+        return Scene(self._template.kind, size, mask, contour_of(mask), None, "{}")

@@ -38,6 +38,14 @@ class XpbdSimulator:
         bending_length: float = Field(0.010, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]")
         table_friction: float = Field(0.8, ge=0.0, le=2.0, description="Coulomb friction, cloth on table")
         cloth_friction: float = Field(0.6, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
+        renumber: int = Field(
+            0, ge=0, description="seed of another order of particles, contacts and constraints; 0 keeps the mesh's"
+        )
+
+    @classmethod
+    def faultless(cls, config: Config) -> tuple[str, dict[str, Any]]:
+        """The simulator that references are made in: with the mesh's own order."""
+        return "xpbd", config.model_dump(exclude_unset=True, exclude={"renumber"})
 
     def __init__(self, config: Config | None = None) -> None:
         self.config = config or self.Config()
@@ -56,9 +64,11 @@ class XpbdSimulator:
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
         self._garment, self._seed, self._actions = garment, seed, []
         self._camera = Camera.framing(2 * radius / self.config.fill)
-        self._solver = Solver(garment.mesh, (flat - centre) @ turn, self.config)
+        self._order = self._numbering(len(flat))
+        self._rank = np.argsort(self._order)
+        self._solver = Solver(garment.mesh.renumbered(self._order), ((flat - centre) @ turn)[self._order], self.config)
         self._solver.settle(0.3)
-        self._keypoints = _named_as_seen(garment, self._solver.positions())
+        self._keypoints = _named_as_seen(garment, self._solver.positions()[self._rank])
         self._two_layers = garment.mesh.layers == 2
         self._outside_up = (garment.mesh.panel == 1) | (not self._two_layers)
         return self.observe()
@@ -110,7 +120,8 @@ class XpbdSimulator:
         """Privileged state: particles, keypoints and the contact memory that :meth:`restore` needs."""
         solver, _ = self._ready()
         extra: dict[str, Any] = {**solver.contact_memory(), "actions": tuple(self._actions)}
-        return SimState(solver.positions(), solver.velocities(), self._keypoints, self._camera, extra)
+        positions, velocities = solver.positions()[self._rank], solver.velocities()[self._rank]
+        return SimState(positions, velocities, self._keypoints, self._camera, extra)
 
     def restore(self, state: SimState) -> None:
         """Return to a state of this garment, so that several picks can be tried from one."""
@@ -120,13 +131,19 @@ class XpbdSimulator:
                 f"the state has {len(state.positions)} particles, the garment {len(garment.mesh.vertices)}; "
                 "restore only states of the garment given to reset()"
             )
-        solver.set_state(state.positions, state.velocities, state.extra)
+        solver.set_state(state.positions[self._order], state.velocities[self._order], state.extra)
         self._camera, self._keypoints = state.camera, state.keypoints
         self._actions = list(state.extra.get("actions", ()))
 
     def close(self) -> None:
         """Release the solver; call :meth:`reset` to go on."""
         self._solver = self._garment = None
+
+    def _numbering(self, count: int) -> NDArray[np.int64]:
+        """Which vertex of the mesh each particle of the solver is, shape (N,)."""
+        if self.config.renumber == 0:
+            return np.arange(count)
+        return np.random.default_rng(self.config.renumber).permutation(count)
 
     def _ready(self) -> tuple[Solver, Garment]:
         if self._solver is None or self._garment is None:

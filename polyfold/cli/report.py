@@ -16,16 +16,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, metavar="FILE", help="the page (default: DIR/report.html)")
     parser.add_argument(
         "--noise-floor",
-        type=float,
-        metavar="POINTS",
-        help="how far repeated runs of one variant differ in success, in percentage points; a footnote",
+        type=Path,
+        metavar="DIR",
+        help="run directory of experiments/noise_floor.toml; a footnote to the comparisons",
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the page and say where it is."""
     from polyfold.report import write_report
+    from polyfold.results import open_results
 
-    path = write_report(arguments.run_directory, arguments.out, arguments.noise_floor)
+    noise = None if arguments.noise_floor is None else open_results(arguments.noise_floor)
+    path = write_report(arguments.run_directory, arguments.out, noise)
     print(f"{path} ({path.stat().st_size / 1e6:.1f} MB)")
     return 0

@@ -14,8 +14,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("out", type=Path, metavar="DIR", help="run directory of an evaluation")
     parser.add_argument("--format", choices=FORMATS, default="markdown", help="default: markdown")
-    parser.add_argument("--by", choices=["kind", "type", "task", "none"], default="kind", help="default: kind")
+    parser.add_argument(
+        "--by", choices=["kind", "type", "task", "split", "step", "none"], default="kind", help="default: kind"
+    )
     parser.add_argument("--compare", nargs=2, metavar=("VARIANT", "BASELINE"), help="paired differences instead")
+    parser.add_argument(
+        "--noise-floor", type=Path, metavar="DIR", help="run directory of experiments/noise_floor.toml; a footnote"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -23,6 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
     from polyfold.results import compare, open_results, table
 
     found = open_results(arguments.out)
-    made = compare(found, *arguments.compare) if arguments.compare else table(found, groups=arguments.by)
+    noise = None if arguments.noise_floor is None else open_results(arguments.noise_floor)
+    made = compare(found, *arguments.compare) if arguments.compare else table(found, groups=arguments.by, noise=noise)
     print(getattr(made, arguments.format)())
     return 0

@@ -36,6 +36,18 @@ class Mesh:
         """1 for a cloth, 2 for a garment with a front and a back."""
         return int(self.panel.max()) + 1
 
+    def renumbered(self, order: NDArray[np.int64]) -> Mesh:
+        """The same mesh with its vertices in another order, shape (N,): vertex k is what ``order[k]`` was."""
+        number = np.argsort(order).astype(np.int32)
+        return Mesh(
+            self.vertices[order],
+            number[self.triangles],
+            self.panel,
+            self.layer[order],
+            self.seam[order],
+            number[self.boundary],
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Garment:

@@ -29,7 +29,7 @@ from polyfold.report.figures import (
 from polyfold.report.gallery import LIMIT, gallery
 from polyfold.report.source import Source, open_source
 from polyfold.report.tabular import comparison_html, success_first, table_html
-from polyfold.results import table
+from polyfold.results import Results, noise_floor, table
 from polyfold.scoring import PRESETS, Threshold
 from polyfold.store import write_atomically
 
@@ -39,31 +39,31 @@ NO_BREAK = "\N{NO-BREAK SPACE}"
 ASSETS = Path(__file__).parent
 
 
-def write_report(folder: str | Path, out: str | Path | None = None, noise_floor: float | None = None) -> Path:
+def write_report(folder: str | Path, out: str | Path | None = None, noise: Results | None = None) -> Path:
     """Write the report of a run directory; returns where it is.
 
     Args:
         folder: run directory of an evaluation, finished or not.
         out: the HTML file; by default ``report.html`` in the run directory.
-        noise_floor: see :func:`report_html`.
+        noise: see :func:`report_html`.
 
     Raises:
         ConfigError: if there is no run directory.
     """
-    page = report_html(folder, noise_floor)
+    page = report_html(folder, noise)
     path = Path(out) if out is not None else Path(folder) / "report.html"
     path.parent.mkdir(parents=True, exist_ok=True)
     write_atomically(path, page)
     return path
 
 
-def report_html(folder: str | Path, noise_floor: float | None = None) -> str:
+def report_html(folder: str | Path, noise: Results | None = None) -> str:
     """The report of a run directory as one self-contained HTML page.
 
     Args:
         folder: run directory of an evaluation, finished or not.
-        noise_floor: how far repeated runs of one variant differ in success, in percentage points, if it was measured;
-            it becomes a footnote to the comparisons.
+        noise: a study of what differs without meaning, see :func:`polyfold.results.noise_floor`; it becomes a footnote
+            to the comparisons.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -76,7 +76,8 @@ def report_html(folder: str | Path, noise_floor: float | None = None) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    return environment.get_template("page.html").render(**_content(source), noise_floor=noise_floor, **_assets())
+    floor = None if noise is None else noise_floor(noise)
+    return environment.get_template("page.html").render(**_content(source), noise_floor=floor, **_assets())
 
 
 def _assets() -> dict[str, Any]:

@@ -9,6 +9,7 @@ from made_up_runs import BAD, GOOD, TASKS, record
 from polyfold.cli import main
 from polyfold.errors import ConfigError
 from polyfold.report import report_html
+from polyfold.results import open_results
 
 
 class Page(HTMLParser):
@@ -162,7 +163,9 @@ def test_episodes_whose_reference_moved_nothing_are_named(make_run):
 
 def test_the_noise_floor_is_a_footnote_where_it_is_given(full_run):
     assert "Noise floor" not in report_html(full_run)
-    assert "up to 1.5 percentage points" in report_html(full_run, noise_floor=1.5)
+    page = report_html(full_run, noise=open_results(full_run))
+    assert "Noise floor" in page
+    assert "MPPE [mm]" in page.partition("Noise floor")[2]
 
 
 def test_a_single_variant_needs_no_comparison(make_run):
@@ -178,7 +181,10 @@ def test_the_verb_writes_the_page_into_the_run_directory_or_where_asked(full_run
     assert main(["report", str(full_run)]) == 0
     assert (full_run / "report.html").read_text("utf-8") == report_html(full_run)
     assert str(full_run / "report.html") in capsys.readouterr().out
-    assert main(["report", str(full_run), "--out", str(tmp_path / "new" / "page.html"), "--noise-floor", "2"]) == 0
+    assert (
+        main(["report", str(full_run), "--out", str(tmp_path / "new" / "page.html"), "--noise-floor", str(full_run)])
+        == 0
+    )
     assert "Noise floor" in (tmp_path / "new" / "page.html").read_text("utf-8")
     assert main(["report", str(tmp_path)]) == 1
     assert "no run directory" in capsys.readouterr().err

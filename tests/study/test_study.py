@@ -10,7 +10,7 @@ import pytest
 
 import polyfold
 from polyfold.config import Choice
-from polyfold.errors import ConfigError, GroundingError
+from polyfold.errors import ConfigError, GroundingError, SimulationError
 from polyfold.judging import suite
 from polyfold.references import reference_for
 from polyfold.results import open_results
@@ -151,3 +151,73 @@ def test_references_have_no_faults():
     faulty = reference_for(task, cloth, 2000, Choice(name="faulty", params={"miss": 1.0}))
     assert (plain.outcome.end.positions == faulty.outcome.end.positions).all()
     assert np.abs(plain.outcome.end.positions - plain.outcome.start.positions).max() > 0.05
+
+
+def test_tasks_are_chosen_by_split_and_number_of_folds():
+    def chosen(**settings):
+        return {cell.task for cell in cells(polyfold.Study(name="some", **settings))}
+
+    assert len(chosen(steps="multi")) == 43
+    assert len(chosen(steps="multi", split="seen")) == 21
+    assert chosen(steps="single") == chosen() - chosen(steps="multi")
+    with pytest.raises(ConfigError, match="widen one of them"):
+        chosen(tasks=("tshirt-block-*",), steps="single")
+
+
+def test_an_oracle_with_its_particles_in_another_order_gives_the_noise_floor(tmp_path):
+    base = polyfold.Study(**{**SMALL, "garments": 1}, base={"agent": "oracle"})
+    results = polyfold.run(polyfold.ablate(base, "simulator.renumber", [0, 5]), tmp_path, progress=False)
+    assert all(record["metrics"]["mppe"] == 0 for record in results.of("0"))
+    assert all(0 < record["metrics"]["mppe"] < 5 for record in results.of("5")), "another order, the same physics"
+    assert "Noise floor" in polyfold.table(results, noise=results).markdown()
+
+
+def test_against_the_ideal_a_good_fold_is_near_but_not_perfect(tmp_path):
+    study = polyfold.Study(**{**SMALL, "garments": 1}, reference="ideal", base={"agent": "oracle"})
+    results = polyfold.run(study, tmp_path, progress=False)
+    assert all(record["success"]["polyfold"] for record in results.records)
+    assert all(record["metrics"]["mppe"] > 0.5 for record in results.records)
+    assert "folded geometrically" in polyfold.table(results).note
+
+
+def test_parameters_of_metrics_count_and_wrong_ones_are_refused(tmp_path):
+    moved = {"agent": "oracle", "simulator": {"name": "faulty", "displace": 1.0}}
+    quick = {**SMALL, "garments": 1, "tasks": ("square-corner-top_left",), "base": moved}
+    plain, aligned = (
+        polyfold.run(polyfold.Study(**quick, metrics=metrics), tmp_path / name, progress=False).records[0]
+        for name, metrics in (("plain", {}), ("aligned", {"mppe": {"align": True}}))
+    )
+    assert aligned["metrics"]["mppe"] < 0.2 < 5 < plain["metrics"]["mppe"], "only the place on the table differs"
+    assert aligned["metrics"]["moved-part"] == plain["metrics"]["moved-part"]
+    with pytest.raises(ConfigError, match="did you mean 'align'"):
+        list(cells(polyfold.Study(**quick, metrics={"mppe": {"aline": True}})))
+
+
+def test_an_oracle_that_diverges_is_recorded_and_ends_no_study(tmp_path, monkeypatch):
+    def diverges(*_):
+        raise SimulationError("the cloth diverged; report it")
+
+    monkeypatch.setattr("polyfold.evaluation.reference_for", diverges)
+    records = evaluate(polyfold.Study(**{**SMALL, "garments": 1}), tmp_path, progress=False)
+    assert [record["cause"] for record in records] == ["infrastructure"] * 4
+    assert "the oracle failed" in records[0]["failure"]["reason"]
+    assert "–" in polyfold.table(open_results(tmp_path)).markdown()
+
+
+def test_policies_that_pick_at_vertices_run_on_oracle_fold_lines(tmp_path):
+    base = {"agent": {"name": "oracle", "ground": True}, "policy": "vertex-random"}
+    study = polyfold.Study(**{**SMALL, "garments": 1}, base=base)
+    assert not any(record["failure"] for record in evaluate(study, tmp_path, progress=False))
+
+
+def test_tables_by_step_and_beside_published_figures(tmp_path):
+    settings = {"tasks": ("square-corner-top_left", "square-corners-*left*right*"), "garments": 1}
+    study = polyfold.Study(**{**SMALL, **settings}, published={"paper": {"square": 94.0, "pants": 79.6}})
+    results = polyfold.run(study, tmp_path, progress=False)
+    by_step = polyfold.table(results, groups="step").markdown()
+    assert "step 2" in by_step
+    assert "| paper | square | – | – | – | – | 94.0 | – |" in polyfold.table(results).markdown()
+    assert "79.6" not in polyfold.table(results).markdown(), "no pants were folded"
+    assert "moved-part" in polyfold.table(results, columns=["moved-part"]).headers
+    with pytest.raises(ConfigError, match="choose from"):
+        polyfold.table(results, columns=["moved"])
