@@ -5,7 +5,8 @@ and folded ideally, without physics or camera: the model text of each step comes
 each fold line moves is compared with what the lines of the accepted tasks move.
 
 A set is a TOML file of ``[[instruction]]`` (``text``, ``garment``, ``accept``: task ids, optionally
-``unordered = true``) and ``[[refuse]]`` (``text``, ``garment``), which must be refused.
+``unordered = true``) and ``[[refuse]]`` (``text``, ``garment``), which must be refused. ``--held-out`` judges only the
+entries with ``held_out = true``, which no grammar or prompt was developed on, ``--developed`` only the others.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from polyfold.tasks import Suite, Task, fold_lines, load_suite
 from polyfold.transcript import Transcript
 from polyfold.types import Camera, FoldLine, Scene
 
-__all__ = ["Outcome", "judge_set", "laid_garment", "main", "plan_ideally"]
+__all__ = ["Outcome", "judge_set", "laid_garment", "main", "part_of_set", "plan_ideally"]
 
 TOLERANCE = 0.05
 """Moved cloth may lie this share of the garment's span from where it should, on average, after every step."""
@@ -187,6 +188,14 @@ def _share(count: int, total: int) -> str:
     return f"{count}/{total} ({100 * count / total:.1f} %)" if total else "–"
 
 
+def part_of_set(content: dict[str, Any], held_out: bool) -> dict[str, Any]:
+    """The held-out part of a set, or the developed one, to which every entry without ``held_out`` belongs."""
+    return {
+        heading: [entry for entry in content.get(heading, []) if entry.get("held_out", False) == held_out]
+        for heading in ("instruction", "refuse")
+    }
+
+
 def suite_set(suite: Suite) -> dict[str, Any]:
     """The suite's own instructions as a set."""
     entries = [
@@ -201,6 +210,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the benchmark and print its table and failures."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--set", help="TOML file of instructions; without it, those of the task suite")
+    part = parser.add_mutually_exclusive_group()
+    part.add_argument("--held-out", action="store_true", help="only entries with held_out = true")
+    part.add_argument("--developed", action="store_true", help="only entries without held_out = true")
     parser.add_argument("--suite", default="polyfold70", help="task suite")
     parser.add_argument("--planner", default="hierarchical")
     parser.add_argument("--llm", default="rules")
@@ -209,6 +221,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     suite = load_suite(str(find("tasks", options.suite).target))
     content = tomllib.loads(Path(options.set).read_text("utf-8")) if options.set else suite_set(suite)
+    if options.held_out or options.developed:
+        content = part_of_set(content, options.held_out)
     planner, llm = create("planners", options.planner), create("llms", options.llm)
     outcomes = judge_set(content, suite, planner, llm, options.garments)
     print(table(outcomes))
