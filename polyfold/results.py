@@ -136,7 +136,8 @@ def noise_floor(noise: Results) -> str:
         noise: a study of the oracle with its particles, contacts and constraints in other orders.
     """
     columns = ", ".join(f"{column} {_mean(column, noise.records)}" for column in COLUMNS)
-    return f"Noise floor, the oracle repeated with particles and contacts in another order (n={len(noise.records)}): {columns}."
+    count = len(noise.records)
+    return f"Noise floor, the oracle repeated with particles and contacts in another order (n={count}): {columns}."
 
 
 def _by_step(results: Results) -> Table:
