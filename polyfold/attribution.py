@@ -9,12 +9,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from polyfold.episode import Episode, Step
+from polyfold.ideal import fidelity
 from polyfold.references import Reference
 from polyfold.types import FoldLine, SimState
 
-__all__ = ["CAUSES", "attribute"]
+__all__ = ["CAUSES", "attribute", "attribute_open"]
 
 CAUSES = ("infrastructure", "grounding", "subgoal", "fold line", "policy", "execution")
 
@@ -22,6 +24,8 @@ OFF = 0.05
 """Share of the garment's span by which lines, vertices and landing places may be off."""
 TURNED = 10.0
 """Degrees by which a fold line may be turned."""
+AS_PLANNED = 0.85
+"""IoU with the ideal fold along the planned lines from which the folds came out as planned."""
 
 
 def attribute(episode: Episode, lines: Sequence[FoldLine], reference: Reference) -> str:
@@ -44,8 +48,37 @@ def attribute(episode: Episode, lines: Sequence[FoldLine], reference: Reference)
     return "subgoal" if len(settled) != len(lines) else "execution"
 
 
+def attribute_open(episode: Episode, mask: NDArray[np.bool_]) -> str:
+    """The first cause of missing a goal that prescribes no folds.
+
+    There is no right plan to compare with. So it is ``subgoal`` where the folds came out as planned, for then the plan
+    was wrong, also if that was to fold nothing; ``execution`` where they did not, or where nothing tells what was
+    planned. A plan that went wrong because the garment was seen wrongly counts as ``subgoal`` too.
+
+    Args:
+        episode: the failed episode.
+        mask: the cloth in the last picture, bool, shape (H, W).
+    """
+    if episode.failure is not None:
+        return _of_failure(episode.failure.stage)
+    settled = episode.settled()
+    lines = [step.fold_line for step in settled if step.fold_line is not None]
+    if len(lines) != len(settled):
+        return "execution"
+    found = fidelity(
+        mask, episode.final_state, episode.initial_state, episode.garment.mesh, lines, reference="self-referenced"
+    )
+    return "subgoal" if found.iou >= AS_PLANNED else "execution"
+
+
 def _of_failure(stage: str) -> str:
-    return {"refused": "subgoal", "grounding": "grounding", "planning": "fold line"}.get(stage, "execution")
+    causes = {
+        "infrastructure": "infrastructure",
+        "refused": "subgoal",
+        "grounding": "grounding",
+        "planning": "fold line",
+    }
+    return causes.get(stage, "execution")
 
 
 def _of_step(

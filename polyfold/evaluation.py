@@ -4,24 +4,27 @@ from __future__ import annotations
 
 import math
 import resource
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from polyfold import plugins
-from polyfold.attribution import attribute
-from polyfold.episode import Episode, Failure, run_episode
+from polyfold.attribution import attribute, attribute_open
+from polyfold.episode import GUIDED, PRIVILEGED, Episode, Failure, build_agent, run_episode
 from polyfold.errors import SimulationError
 from polyfold.garments import Garment
-from polyfold.judging import final_mask, suite
+from polyfold.goals import OpenTask, measure
+from polyfold.interfaces import Goal
+from polyfold.judging import accepted_tasks, final_mask, first_mask, suite
 from polyfold.references import Reference, ideal_reference, reference_for
-from polyfold.scoring import PRESETS, Outcome, succeeded
+from polyfold.scoring import PRESETS, Outcome, needed_scale, succeeded
 from polyfold.study import Cell, Study, experiment_of
 from polyfold.tasks import Task, fold_lines
 from polyfold.thumbnails import thumbnail
+from polyfold.types import Decision, Observation, Subgoal
 
 __all__ = ["evaluate_cell", "evaluate_with_picture"]
 
@@ -33,14 +36,41 @@ def _garment(kind: str, seed: int, edge_length: float) -> Garment:
     return plugins.create("garments", kind).generate(seed, edge_length)
 
 
+@dataclass(frozen=True, eq=False)
+class _Comparison:
+    """An episode beside its references.
+
+    Attributes:
+        values: metrics against the nearest reference, NaN without one.
+        nearest: the reference whose thresholds are met most easily; None without any.
+        success: whether all thresholds of a preset hold against one and the same reference, by preset.
+    """
+
+    values: Mapping[str, float]
+    nearest: Reference | None
+    success: Mapping[str, bool]
+
+
+class _Idle:
+    """Stands in for an agent that can't be told what to do."""
+
+    requires: ClassVar[frozenset[str]] = frozenset()
+
+    def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
+        return ()
+
+    def decide(self, observation: Observation) -> Decision | None:
+        return None
+
+
 def evaluate_cell(study: Study, cell: Cell) -> Record:
     """Run one episode and score it; plain data.
 
     The pose depends on the garment's seed alone, so that all variants and wordings start from the same picture as the
-    oracle.
+    oracle. A goal without given folds (:mod:`polyfold.goals`) is compared with the nearest of the tasks that it
+    accepts, and its record's ``done`` says which of its own bounds the end keeps.
     """
-    task = suite(study.suite).task(cell.task)
-    return _record(study, cell, task, *_run(study, cell, task))
+    return _evaluated(study, cell)[0]
 
 
 def evaluate_with_picture(study: Study, cell: Cell, pictures: str) -> tuple[Record, bytes | None]:
@@ -52,38 +82,77 @@ def evaluate_with_picture(study: Study, cell: Cell, pictures: str) -> tuple[Reco
         study, cell: what to run.
         pictures: one of :data:`polyfold.thumbnails.PICTURES`.
     """
-    task = suite(study.suite).task(cell.task)
-    episode, reference = _run(study, cell, task)
-    record = _record(study, cell, task, episode, reference)
+    record, episode, nearest = _evaluated(study, cell)
     first = cell.garment_seed == study.first_seed and cell.wording == 0
     if pictures == "all" or (pictures == "failed" and (first or not record["success"]["polyfold"])):
-        return record, thumbnail(episode, None if reference is None else reference.outcome.mask)
+        return record, thumbnail(episode, None if nearest is None else nearest.outcome.mask)
     return record, None
 
 
-def _run(study: Study, cell: Cell, task: Task) -> tuple[Episode, Reference | None]:
-    """The episode and what it is compared with; None where the oracle itself failed, which ends no study."""
+def _evaluated(study: Study, cell: Cell) -> tuple[Record, Episode, Reference | None]:
+    entry = suite(study.suite).entry(cell.task)
+    accepted = (entry,) if isinstance(entry, Task) else accepted_tasks(study.suite, entry)
+    episode = _run(study, cell, entry, accepted)
+    try:
+        references = _references(study, cell, accepted, episode)
+    except SimulationError as error:
+        failure = Failure("infrastructure", f"the oracle failed: {error}")
+        references, episode = [], replace(episode, failure=failure)
+    comparison = _compare(study, episode, references)
+    return _record(cell, entry, episode, comparison), episode, comparison.nearest
+
+
+def _run(study: Study, cell: Cell, entry: Task | OpenTask, accepted: Sequence[Task]) -> Episode:
+    """The episode; guidance, for agents that need it, is made from the first accepted task."""
     garment = _garment(cell.garment, cell.garment_seed, study.edge_length)
     experiment = experiment_of(study, cell.variant)
-    instruction = task.instructions[cell.wording] if task.instructions else ""
-    episode = run_episode(experiment, garment, instruction, cell.garment_seed, task=task, agent_seed=cell.seed)
+    instruction = entry.instructions[cell.wording] if entry.instructions else ""
+    agent = build_agent(experiment)
+    if accepted or not agent.requires & GUIDED:
+        task = accepted[0] if accepted else None
+        return run_episode(
+            experiment, garment, instruction, cell.garment_seed, agent=agent, task=task, agent_seed=cell.seed
+        )
+    idle = run_episode(experiment, garment, instruction, cell.garment_seed, agent=_Idle())
+    failure = Failure(
+        "infrastructure",
+        f"the agent {experiment.agent.name!r} needs guidance, which is made from a task, and {entry.id} accepts none; "
+        "give it goals with 'accept' only",
+    )
+    return replace(idle, failure=failure, privileged=bool(agent.requires & PRIVILEGED))
+
+
+def _references(study: Study, cell: Cell, accepted: Sequence[Task], episode: Episode) -> list[Reference]:
     if study.reference == "ideal":
-        return episode, ideal_reference(task, garment, episode.initial_state)
-    try:
-        return episode, reference_for(task, garment, cell.garment_seed, experiment.simulator)
-    except SimulationError as error:
-        return replace(episode, failure=Failure("infrastructure", f"the oracle failed: {error}")), None
+        return [ideal_reference(task, episode.garment, episode.initial_state) for task in accepted]
+    simulator = episode.experiment.simulator
+    return [reference_for(task, episode.garment, cell.garment_seed, simulator) for task in accepted]
 
 
-def _record(study: Study, cell: Cell, task: Task, episode: Episode, reference: Reference | None) -> Record:
-    values = _scores(study, episode, reference)
-    success = {preset: episode.failure is None and succeeded(values, preset) for preset in PRESETS}
+def _compare(study: Study, episode: Episode, references: Sequence[Reference]) -> _Comparison:
+    if not references:
+        return _Comparison(dict.fromkeys(plugins.names("metrics"), math.nan), None, dict.fromkeys(PRESETS, False))
+    result = Outcome(episode.initial_state, episode.final_state, final_mask(episode))
+    metrics = {name: plugins.create("metrics", name, study.metrics.get(name)) for name in plugins.names("metrics")}
+    scores = [
+        {name: metric.score(result, [reference.outcome]) for name, metric in metrics.items()}
+        for reference in references
+    ]
+    nearest = min(range(len(scores)), key=lambda index: needed_scale(scores[index]))
+    success = {preset: any(succeeded(values, preset) for values in scores) for preset in PRESETS}
+    return _Comparison(scores[nearest], references[nearest], success)
+
+
+def _record(cell: Cell, entry: Task | OpenTask, episode: Episode, comparison: _Comparison) -> Record:
+    done = _done(entry, episode)
+    reached = {preset: holds or bool(done and done["holds"]) for preset, holds in comparison.success.items()}
+    success = {preset: episode.failure is None and holds for preset, holds in reached.items()}
     return {
         "variant": cell.variant,
         "task": cell.task,
-        "type": task.type,
-        "split": task.split,
-        "steps_wanted": len(task.steps),
+        "type": entry.type,
+        "split": entry.split if isinstance(entry, Task) else None,
+        "steps_wanted": len(entry.steps) if isinstance(entry, Task) else None,
         "garment": cell.garment,
         "garment_seed": cell.garment_seed,
         "wording": cell.wording,
@@ -91,31 +160,34 @@ def _record(study: Study, cell: Cell, task: Task, episode: Episode, reference: R
         "subgoals": [subgoal.text for subgoal in episode.subgoals],
         "steps": len(episode.settled()),
         "retries": sum(step.retry for step in episode.steps),
-        "metrics": {name: _number(value) for name, value in values.items()},
-        "step_errors_mm": _step_errors(episode, reference),
+        "metrics": {name: _number(value) for name, value in comparison.values.items()},
+        "done": done,
+        "step_errors_mm": _step_errors(episode, comparison.nearest),
         "success": success,
         "failure": None if episode.failure is None else vars(episode.failure),
-        "cause": None if success["polyfold"] else _cause(episode, task, reference),
+        "cause": None if success["polyfold"] else _cause(episode, entry, comparison.nearest),
         "privileged": episode.privileged,
         "seconds": {stage: round(spent, 4) for stage, spent in episode.seconds.items()},
         "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
     }
 
 
-def _cause(episode: Episode, task: Task, reference: Reference | None) -> str:
+def _done(entry: Task | OpenTask, episode: Episode) -> Record | None:
+    """What a goal's own bounds say about the end; None where it has none."""
+    if isinstance(entry, Task) or entry.done is None:
+        return None
+    measured = measure(final_mask(episode), first_mask(episode), len(episode.settled()))
+    failing = entry.done.failing(measured)
+    values = {name: round(value, 4) if isinstance(value, float) else value for name, value in vars(measured).items()}
+    return {"holds": not failing, "failing": list(failing), "measured": values}
+
+
+def _cause(episode: Episode, entry: Task | OpenTask, reference: Reference | None) -> str:
+    if isinstance(entry, OpenTask):
+        return attribute_open(episode, final_mask(episode))
     if reference is None:
         return "infrastructure"
-    return attribute(episode, fold_lines(task, episode.initial_state.keypoint_pixels()), reference)
-
-
-def _scores(study: Study, episode: Episode, reference: Reference | None) -> Mapping[str, float]:
-    if reference is None:
-        return dict.fromkeys(plugins.names("metrics"), math.nan)
-    result = Outcome(episode.initial_state, episode.final_state, final_mask(episode))
-    return {
-        name: plugins.create("metrics", name, study.metrics.get(name)).score(result, [reference.outcome])
-        for name in plugins.names("metrics")
-    }
+    return attribute(episode, fold_lines(entry, episode.initial_state.keypoint_pixels()), reference)
 
 
 def _step_errors(episode: Episode, reference: Reference | None) -> list[float | None]:

@@ -14,9 +14,9 @@ from polyfold.errors import ConfigError, GroundingError, PluginError
 from polyfold.goals import OpenTask
 from polyfold.ideal import fidelity
 from polyfold.tasks import Suite, Task, fold_lines, load_suite, recognise
-from polyfold.types import FoldLine
+from polyfold.types import FoldLine, Observation
 
-__all__ = ["accepted_tasks", "final_mask", "find_task", "judge", "known_tasks", "suite"]
+__all__ = ["accepted_tasks", "final_mask", "find_task", "first_mask", "judge", "known_tasks", "suite"]
 
 
 @cache
@@ -81,10 +81,19 @@ def find_task(task_id: str, kind: str) -> Task:
 
 def final_mask(episode: Episode) -> NDArray[np.bool_]:
     """The cloth in the last picture, bool, shape (H, W); empty if it was carried out of sight."""
+    return _cloth(episode, episode.final)
+
+
+def first_mask(episode: Episode) -> NDArray[np.bool_]:
+    """The flat cloth in the first picture, bool, shape (H, W); empty if the segmenter finds none."""
+    return _cloth(episode, episode.start)
+
+
+def _cloth(episode: Episode, seen: Observation) -> NDArray[np.bool_]:
     try:
-        return episode.experiment.create("segmenters", "segmenter").segment(episode.final)
+        return episode.experiment.create("segmenters", "segmenter").segment(seen)
     except GroundingError:
-        return np.zeros(episode.final.depth.shape, bool)
+        return np.zeros(seen.depth.shape, bool)
 
 
 def judge(episode: Episode, task_id: str | None = None) -> Episode:

@@ -14,7 +14,7 @@ from polyfold.store import read_episodes
 from polyfold.study import Study
 from polyfold.tables import Table, shown
 
-__all__ = ["Results", "compare", "noise_floor", "open_results", "run", "table"]
+__all__ = ["Results", "compare", "compared", "noise_floor", "open_results", "run", "table"]
 
 Record = Mapping[str, Any]
 
@@ -78,6 +78,11 @@ def open_results(out: str | Path) -> Results:
     return Results(Study(**config["study"]), read_episodes(out))
 
 
+def compared(record: Record) -> bool:
+    """Whether there was anything to compare an episode with: goals that accept no task have metrics of None."""
+    return any(value is not None for value in record["metrics"].values())
+
+
 COLUMNS: dict[str, Callable[[Record], float | None]] = {
     "MPPE [mm]": lambda record: record["metrics"]["mppe"],
     "mIoU": lambda record: record["metrics"]["miou"],
@@ -122,6 +127,8 @@ def table(
             rows.append([_marked(variant, records), group, str(len(records)), *cells])
     rows += _published(results, columns, dict.fromkeys(row[1] for row in rows))
     note = f"{results.study.name}: mean [95 % bootstrap interval]; reference: {REFERENCES[results.study.reference]}."
+    if any(record.get("steps_wanted", 0) is None for record in results.records):
+        note += " Goals: the nearest task that each accepts; success includes those that are done by their own bounds."
     if any(record["privileged"] for record in results.records):
         note += " * privileged: sees more than the camera."
     if noise is not None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from polyfold.types import SimState
 
-__all__ = ["PRESETS", "Outcome", "Threshold", "succeeded"]
+__all__ = ["PRESETS", "Outcome", "Threshold", "needed_scale", "succeeded"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +45,15 @@ class Threshold:
         """Whether a value meets the bound; NaN (nothing to measure) does."""
         return bool(np.isnan(value) or (value >= self.bound if self.higher_is_better else value <= self.bound))
 
+    def share(self, value: float) -> float:
+        """How much of what the bound allows a value takes up: an error of its bound, an overlap of what may miss to 1.
+
+        NaN (nothing to measure) takes up nothing; at most 1 meets the bound.
+        """
+        if np.isnan(value):
+            return 0.0
+        return (1.0 - value) / (1.0 - self.bound) if self.higher_is_better else value / self.bound
+
 
 PRESETS: Mapping[str, Sequence[Threshold]] = {
     "polyfold": (
@@ -64,3 +73,8 @@ PRESETS: Mapping[str, Sequence[Threshold]] = {
 def succeeded(values: Mapping[str, float], preset: str = "polyfold") -> bool:
     """Whether metric values meet every threshold of a preset."""
     return all(threshold.holds(values[threshold.metric]) for threshold in PRESETS[preset])
+
+
+def needed_scale(values: Mapping[str, float]) -> float:
+    """The factor on what the thresholds of ``polyfold`` allow at which metric values just meet them: 0 is perfect."""
+    return max(threshold.share(values[threshold.metric]) for threshold in PRESETS["polyfold"])

@@ -21,6 +21,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from polyfold.config import Experiment, read_toml
 from polyfold.errors import ConfigError
+from polyfold.goals import OpenTask
 from polyfold.judging import suite
 from polyfold.tasks import Task
 
@@ -30,18 +31,19 @@ Overrides = dict[str, Any]
 
 
 class Study(BaseModel):
-    """What to run: a suite's tasks on seeded garments, once per variant.
+    """What to run: a suite's tasks and goals on seeded garments, once per variant.
 
     Attributes:
         name: what results are labelled with.
         suite: registered task suite.
-        tasks: patterns of task ids (``tshirt-*``); all by default.
+        tasks: patterns of ids of tasks and goals (``tshirt-*``); all by default.
         garments: number of garments per kind, seeds from ``first_seed`` on.
         instructions: ``first`` asks with the first wording, ``in-turn`` with the next one on each garment, ``all`` with
             each of them.
         edge_length: mesh size [m].
         split: only the tasks that learning baselines may train on (``seen``), or only the others (``unseen``).
-        steps: only tasks of one fold (``single``), or only those of several (``multi``).
+        steps: only tasks of one fold (``single``), or only those of several (``multi``). Goals have neither a split nor
+            a number of folds and are left out by both.
         reference: what results are compared with: the ``oracle``'s in the same simulator, or the ``ideal``, the flat
             garment folded geometrically, which owes nothing to any simulator or policy.
         metrics: parameters of metrics by name, for example ``{"mppe": {"align": true}}``.
@@ -214,8 +216,8 @@ def cells(study: Study) -> Iterator[Cell]:
                 yield Cell(variant, task.id, task.garment, garment_seed, wording, seed)
 
 
-def _chosen_tasks(study: Study) -> list[Task]:
-    tasks = suite(study.suite).tasks
+def _chosen_tasks(study: Study) -> list[Task | OpenTask]:
+    tasks = suite(study.suite).entries
     for pattern in study.tasks:
         if not any(fnmatch.fnmatch(task.id, pattern) for task in tasks):
             raise ConfigError(
@@ -230,14 +232,14 @@ def _chosen_tasks(study: Study) -> list[Task]:
     return chosen
 
 
-def _is_chosen(study: Study, task: Task) -> bool:
-    return (
-        any(fnmatch.fnmatch(task.id, pattern) for pattern in study.tasks)
-        and study.split in (None, task.split)
-        and study.steps in (None, "single" if len(task.steps) == 1 else "multi")
-    )
+def _is_chosen(study: Study, task: Task | OpenTask) -> bool:
+    if not any(fnmatch.fnmatch(task.id, pattern) for pattern in study.tasks):
+        return False
+    if isinstance(task, OpenTask):
+        return study.split is None and study.steps is None
+    return study.split in (None, task.split) and study.steps in (None, "single" if len(task.steps) == 1 else "multi")
 
 
-def _wordings(study: Study, task: Task, index: int) -> Sequence[int]:
+def _wordings(study: Study, task: Task | OpenTask, index: int) -> Sequence[int]:
     count = max(1, len(task.instructions))
     return {"first": [0], "in-turn": [index % count], "all": range(count)}[study.instructions]

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from polyfold.results import Record
-from polyfold.scoring import PRESETS, Threshold
+from polyfold.results import Record, compared
+from polyfold.scoring import Threshold, needed_scale
 
 __all__ = ["SCALES", "Curve", "scaled", "success_curve", "wilson"]
 
@@ -36,7 +36,7 @@ def success_curve(records: Sequence[Record]) -> Curve:
     """Success of episodes as all thresholds of the preset ``polyfold`` are loosened or tightened together.
 
     Bounds on errors are multiplied; of a bound on an overlap, what may be missing to 1 is. An episode that ended early
-    never succeeds.
+    never succeeds; a goal that is done by its own bounds does with any thresholds.
     """
     needed = np.array([_needed_scale(record) for record in records])
     counts = [int(np.count_nonzero(needed <= scale + 1e-9)) for scale in SCALES]
@@ -56,16 +56,11 @@ def _needed_scale(record: Record) -> float:
     """The smallest factor on the thresholds at which an episode succeeds."""
     if record["failure"] is not None:
         return math.inf
-    return max(_share_of_bound(threshold, record["metrics"]) for threshold in PRESETS["polyfold"])
-
-
-def _share_of_bound(threshold: Threshold, metrics: dict[str, float | None]) -> float:
-    value = metrics.get(threshold.metric)
-    if value is None:
+    if (record.get("done") or {}).get("holds"):
         return 0.0
-    if threshold.higher_is_better:
-        return (1.0 - value) / (1.0 - threshold.bound)
-    return value / threshold.bound
+    if not compared(record):
+        return math.inf
+    return needed_scale({name: math.nan if value is None else value for name, value in record["metrics"].items()})
 
 
 def wilson(successes: int, n: int) -> tuple[float, float]:

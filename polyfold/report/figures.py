@@ -12,7 +12,7 @@ from polyfold.attribution import CAUSES
 from polyfold.report.charts import Part, bar, curve_panel, dot
 from polyfold.report.curves import success_curve
 from polyfold.report.source import Source
-from polyfold.results import Record
+from polyfold.results import Record, compared
 from polyfold.statistics import Estimate, estimate
 from polyfold.tables import Table, shown
 
@@ -93,12 +93,12 @@ def curve_panels(source: Source) -> list[dict[str, Any]]:
 
 def idle_references(source: Source) -> list[str]:
     """Tasks and garments of the episodes in which the oracle moved nothing: there is no moved part to measure."""
-    idle = [record for record in source.records if "moved-part" in record["metrics"] and _nothing_to_move(record)]
+    idle = [record for record in source.records if compared(record) and _nothing_to_move(record)]
     return [f"{record['task']} on {record['garment']} {record['garment_seed']}" for record in idle]
 
 
 def _nothing_to_move(record: Record) -> bool:
-    return record["metrics"]["moved-part"] is None
+    return record["metrics"].get("moved-part", 0.0) is None
 
 
 def _causes(records: Sequence[Record]) -> Counter[str]:
