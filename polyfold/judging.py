@@ -19,7 +19,6 @@ from polyfold.types import FoldLine, Observation
 __all__ = ["accepted_tasks", "final_mask", "find_task", "first_mask", "judge", "known_tasks", "suite"]
 
 
-@cache
 def suite(name: str) -> Suite:
     """A registered task suite by name, its goals checked against the suite whose tasks they accept.
 
@@ -27,10 +26,7 @@ def suite(name: str) -> Suite:
         PluginError: if there is no such suite.
         ConfigError: if its file is wrong.
     """
-    found = _loaded(name)
-    for goal in found.goals:
-        _accepted(name, found, goal)
-    return found
+    return _checked(name, str(plugins.find("tasks", name).target))
 
 
 def accepted_tasks(name: str, goal: OpenTask) -> tuple[Task, ...]:
@@ -39,8 +35,21 @@ def accepted_tasks(name: str, goal: OpenTask) -> tuple[Task, ...]:
 
 
 @cache
-def _loaded(name: str) -> Suite:
-    return load_suite(str(plugins.find("tasks", name).target))
+def _checked(name: str, target: str) -> Suite:
+    found = _loaded(target)
+    for goal in found.goals:
+        _accepted(name, found, goal)
+    return found
+
+
+@cache
+def _loaded(target: str) -> Suite:
+    return load_suite(target)
+
+
+def _loaded_by_name(name: str) -> Suite:
+    """Without a check of its own goals, so that two suites may accept tasks of each other."""
+    return _loaded(str(plugins.find("tasks", name).target))
 
 
 def _accepted(name: str, found: Suite, goal: OpenTask) -> tuple[Task, ...]:
@@ -48,7 +57,7 @@ def _accepted(name: str, found: Suite, goal: OpenTask) -> tuple[Task, ...]:
         return ()
     where = str(plugins.find("tasks", name).target)
     try:
-        source = found if found.accept_from in (name, found.name) else _loaded(found.accept_from)
+        source = found if found.accept_from in (name, found.name) else _loaded_by_name(found.accept_from)
     except PluginError as error:
         raise ConfigError(f"{where}: goal {goal.id}, field accept: {error}; set accept_from to such a suite") from error
     try:

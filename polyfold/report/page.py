@@ -106,6 +106,7 @@ def _content(source: Source) -> dict[str, Any]:
         "n": len(source.records),
         "expected": source.expected,
         "privileged": any(record["privileged"] for record in source.records),
+        "goals": any(record.get("steps_wanted", 0) is None for record in source.records),
         "first": first,
         "versions": source.versions,
         "presets": {name: [_bound(threshold) for threshold in bounds] for name, bounds in PRESETS.items()},
