@@ -41,10 +41,10 @@ def _garment(question: Question) -> Garment:
 
 
 def _subgoals(question: Question) -> str:
-    from polyfold_llms.folding.meaning import understand
+    from polyfold_llms.folding.instruction import plan
 
     garment = _garment(question)
-    meaning = understand(question.sentence, garment)
+    meaning = plan(question.sentence, garment)
     count = len(meaning.folds)
     reasoning = [f"A {garment.spoken} lies flat on the table. The instruction takes {count} fold{'s' * (count > 1)}."]
     reasoning += meaning.notes

@@ -5,61 +5,12 @@ from __future__ import annotations
 import re
 import unicodedata
 from dataclasses import dataclass
-from functools import cache
 
 from polyfold_llms.folding.lexicon import fillers, phrases
+from polyfold_llms.folding.spelling import number_of, spell, variants
 
 __all__ = ["Sentence", "Token", "read"]
 
-NUMBERS = {
-    "zero": 0, "one": 1, "two": 2, "three": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9,
-    "ten": 10, "dozen": 12, "twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "hundred": 100, "thousand": 1000,
-}  # fmt: skip
-MISSPELT = {
-    "teh": "the",
-    "hte": "the",
-    "adn": "and",
-    "nad": "and",
-    "lfet": "left",
-    "letf": "left",
-    "tot": "to",
-    "fo": "of",
-    "bot": "both",
-    "boht": "both",
-    "flod": "fold",
-    "foled": "fold",
-    "hafl": "half",
-    "haf": "half",
-    "sleve": "sleeve",
-    "rigt": "right",
-    "rihgt": "right",
-    "righ": "right",
-    "botom": "bottom",
-    "bottem": "bottom",
-    "midle": "middle",
-    "tshrit": "tshirt",
-    "tshir": "tshirt",
-    "leggs": "legs",
-    "pans": "pants",
-    "hemm": "hem",
-    "conrer": "corner",
-    "coner": "corner",
-    "sqare": "square",
-    "thrid": "third",
-    "lef": "left",
-    "ontop": "on top",
-}
-"""Short words and double slips that one edit on a long word does not reach."""
-IRREGULAR = {
-    "brought": "bring", "took": "take", "taken": "take", "laid": "lay", "swung": "swing", "sent": "send",
-    "bent": "bend", "met": "meet", "kept": "keep", "left": "left", "made": "make", "drawn": "draw", "slid": "slide",
-    "went": "go", "gone": "go", "came": "come", "goes": "go", "held": "hold", "lay": "lay", "lies": "lie",
-    "lying": "lie", "sat": "sit", "hung": "hang", "worn": "wear", "tore": "tear", "torn": "tear", "spun": "spin",
-    "shook": "shake", "threw": "throw", "thrown": "throw", "undid": "undo", "undone": "undo", "leaves": "leave",
-    "tidied": "tidy", "tidies": "tidy", "halved": "halve", "halves": "half", "drew": "draw", "hid": "hide",
-    "dries": "dry", "dried": "dry", "ran": "run", "shrunk": "shrink", "ft": "foot", "centres": "centre",
-    "centers": "centre", "center": "centre", "middles": "middle", "organised": "organise",
-}  # fmt: skip
 NAMED_ASIDE = re.compile(r"\((?:[a-z0-9]+_[a-z0-9_]+|,|and|\s)+\)")
 """Vertex names in brackets, which only repeat what stands before them."""
 SIDED_NAME = re.compile(r"\b(armpit|shoulder|neck|sleeve|hem|waist|leg)(?:_top|_bottom)?_(left|right|center)\b")
@@ -176,7 +127,7 @@ def read(text: str) -> Sentence:
     plain = TIMES.sub(_count("timescount"), plain)
     words = re.findall(r"[a-z0-9']+|[.,;:!?()]", plain)
     corrections: list[tuple[str, str]] = []
-    fixed = [_spell(word, corrections) for word in words]
+    fixed = [spell(word, corrections) for word in words]
     return Sentence(tuple(_tag(fixed)), tuple(corrections))
 
 
@@ -216,7 +167,7 @@ def _count(name: str, keep: int = 0):
     """Replace a counted noun by one word that carries the number; ``keep`` is a group to leave in the text."""
 
     def replace(match: re.Match[str]) -> str:
-        number = _number(match.group(1))
+        number = number_of(match.group(1))
         kept = f"{match.group(keep) or ''} fold" if keep else ""
         return match.group(0) if number is None else f" {kept} {name}{number} "
 
@@ -227,74 +178,6 @@ def _simile(match: re.Match[str]) -> str:
     known = next((phrase for word, phrase in SIMILES.items() if word in match.group(0)), None)
     cut = re.search(r"\b(?:and|then|with|by|so|from|until|along)\b.*", match.group(0))
     return f"{known or ''} {cut.group(0) if cut else ''}"
-
-
-def _number(word: str) -> int | None:
-    return int(word) if word.isdigit() and len(word) < 7 else NUMBERS.get(word)
-
-
-def _variants(word: str) -> tuple[tuple[str, str], ...]:
-    """Possible dictionary forms of a word with its grammatical form."""
-    found = [(word, "base")]
-    if word in IRREGULAR:
-        found.append((IRREGULAR[word], "plural" if word.endswith("s") else "past"))
-    for ending, added, form in (
-        ("s", "", "plural"), ("es", "", "plural"), ("ies", "y", "plural"), ("ing", "", "ing"), ("ing", "e", "ing"),
-        ("ed", "", "past"), ("d", "", "past"), ("ied", "y", "past"), ("ves", "f", "plural"),
-    ):  # fmt: skip
-        if word.endswith(ending) and len(word) - len(ending) >= 2:
-            stem = word[: -len(ending)]
-            found.append((stem + added, form))
-            if not added and len(stem) > 3 and stem[-1] == stem[-2]:
-                found.append((stem[:-1], form))
-    return tuple(found)
-
-
-@cache
-def _vocabulary() -> frozenset[str]:
-    words = {word for entries in phrases().values() for phrase, _, _ in entries for word in phrase}
-    return frozenset(words | set(fillers()) | set(NUMBERS) | set(IRREGULAR))
-
-
-def _known(word: str) -> bool:
-    return any(form in _vocabulary() for form, _ in _variants(word))
-
-
-def _spell(word: str, corrections: list[tuple[str, str]]) -> str:
-    """The word itself if known, else the one known word within a single edit; short words are left alone."""
-    if word in MISSPELT and not _known(word):
-        corrections.append((word, MISSPELT[word]))
-        return MISSPELT[word]
-    if len(word) < 4 or not word.isalpha() or _known(word) or word.startswith(("stepcount", "timescount")):
-        return word
-    shortest = 5 if len(word) > 4 else 4
-    near = sorted(
-        k
-        for k in _vocabulary()
-        if len(k) >= shortest and _one_edit(word, k, len(word) == 4) and (k[0] == word[0] or k[:2] == word[1::-1])
-    )
-    singular = word[:-1] if word.endswith("s") else ""
-    if not near and len(singular) >= 5:
-        near = sorted(
-            k + "s" for k in _vocabulary() if len(k) >= 5 and k[0] == word[0] and _one_edit(singular, k, False)
-        )
-    if len(near) > 1:
-        near = [known for known in near if known[0] == word[0] and len(known) == len(word)]
-    if len(near) != 1:
-        return word
-    corrections.append((word, near[0]))
-    return near[0]
-
-
-def _one_edit(a: str, b: str, swaps_only: bool) -> bool:
-    """Whether one insertion, deletion, substitution or swap of neighbours turns ``a`` into ``b``."""
-    if abs(len(a) - len(b)) > 1:
-        return False
-    start = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
-    x, y = a[start:], b[start:]
-    if len(x) > 1 and len(y) > 1 and x[0] == y[1] and x[1] == y[0] and x[2:] == y[2:]:
-        return True
-    return not swaps_only and (x[1:] == y[1:] or x[1:] == y or x == y[1:])
 
 
 def _tag(words: list[str]) -> list[Token]:
@@ -322,7 +205,7 @@ def _match(words: list[str], at: int) -> tuple[Token | None, int]:
     if word == ",":
         return Token("join", "comma", word), 1
     best: tuple[int, int, Token] | None = None
-    for variant, form in _variants(word):
+    for variant, form in variants(word):
         for phrase, category, value in phrases().get(variant, ()):
             last_form = _fits(words, at, phrase)
             if last_form is None or (len(phrase) == 1 and not _allowed(category, form)):
@@ -335,9 +218,9 @@ def _match(words: list[str], at: int) -> tuple[Token | None, int]:
                 best = (*rank, token)
     if best is not None:
         return best[2], best[0]
-    if _number(word) is not None:
-        return Token("number", str(_number(word)), word), 1
-    if any(variant in fillers() for variant, _ in _variants(word)) or word.endswith("ly"):
+    if number_of(word) is not None:
+        return Token("number", str(number_of(word)), word), 1
+    if any(variant in fillers() for variant, _ in variants(word)) or word.endswith("ly"):
         return None, 1
     adjective = at > 0 and words[at - 1] in (
         "the",
@@ -371,7 +254,7 @@ def _fits(words: list[str], at: int, phrase: tuple[str, ...]) -> str | None:
         return None
     form = "base"
     for word, wanted in zip(words[at:], phrase, strict=False):
-        forms = dict(reversed(_variants(word)))
+        forms = dict(reversed(variants(word)))
         if wanted not in forms:
             return None
         form = forms[wanted]
@@ -382,7 +265,7 @@ def _cut_off(token: Token, words: list[str], after: int) -> bool:
     """``to the right`` is a direction, but not in ``to the right edge`` or ``to the left and right``."""
     if after >= len(words):
         return False
-    following = {variant for variant, _ in _variants(words[after])}
+    following = {variant for variant, _ in variants(words[after])}
     ends_in_side = token.text.split()[-1] in ("left", "right", "top", "bottom")
     if token.category in ("dir", "manner") and ends_in_side and (following & PART_WORDS or "hand" in following):
         return True
