@@ -87,11 +87,9 @@ Results = Iterator[tuple[Cell, Outcome]]
 
 
 def _results(job: Job, missing: Sequence[Cell], workers: int, engine: str, address: str | None) -> Results:
-    if not missing:
-        return iter(())
-    if engine == "dask":
+    if missing and engine == "dask":
         return _on_dask(job, missing, workers, address)
-    return _in_processes(job, missing, workers) if workers > 1 else _here(job, missing)
+    return _in_processes(job, missing, workers) if missing and workers > 1 else _here(job, missing)
 
 
 def _here(job: Job, missing: Sequence[Cell]) -> Results:

@@ -110,6 +110,7 @@ def test_killed_at_any_moment_it_goes_on_without_loss_or_repetition(tmp_path):
     resumed = evaluate(polyfold.load(config), tmp_path / "run", progress=False)
     keys = [json.loads(line)["key"] for line in episodes.read_text().splitlines()]
     assert len(keys) == len(set(keys)) == 12
+    assert evaluate(polyfold.load(config), tmp_path / "run", workers=2, progress=False) == resumed, "nothing is missing"
     undisturbed = evaluate(polyfold.load(config), tmp_path / "other", progress=False)
     assert untimed(resumed) == untimed(undisturbed)
 
