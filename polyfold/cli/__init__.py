@@ -16,6 +16,7 @@ VERBS = {
     "fold": ("polyfold.cli.fold", "fold a garment from a sentence, in simulation"),
     "ground": ("polyfold.cli.ground", "fit the polygon model to a photo, mask or outline"),
     "garments": ("polyfold.cli.garments", "draw a picture sheet of seeded garments"),
+    "tasks": ("polyfold.cli.tasks", "list the task suites and their tasks"),
     "evaluate": ("polyfold.cli.evaluate", "run a study: variants over tasks and garments"),
     "table": ("polyfold.cli.table", "tabulate an evaluation"),
     "report": ("polyfold.cli.report", "write an evaluation as one HTML page"),

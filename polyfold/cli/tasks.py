@@ -1,0 +1,45 @@
+"""``polyfold tasks``: the installed task suites, and what is in them."""
+
+from __future__ import annotations
+
+import argparse
+
+__all__ = ["configure", "run"]
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options."""
+    parser.add_argument("suite", nargs="?", metavar="SUITE", help="list its tasks and goals (default: list the suites)")
+    parser.add_argument("--garment", metavar="KIND", help="only this kind")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the list."""
+    if arguments.suite is None:
+        _list_suites()
+    else:
+        _list_tasks(arguments.suite, arguments.garment)
+    return 0
+
+
+def _list_suites() -> None:
+    from polyfold import plugins
+    from polyfold.judging import suite
+
+    for name in plugins.names("tasks"):
+        found = suite(name)
+        print(f"{name:<16} {len(found.tasks):>4} tasks {len(found.goals):>4} goals   {found.description}")
+
+
+def _list_tasks(name: str, kind: str | None) -> None:
+    from polyfold.guidance import describe
+    from polyfold.judging import suite
+
+    found = suite(name)
+    for task in found.tasks:
+        if kind in (None, task.garment):
+            folds = "; ".join(describe(fold) for fold in task.steps)
+            print(f"{task.id}  [{task.type}{', ' + task.split if task.split else ''}]\n    {folds}")
+    for goal in found.goals:
+        if kind in (None, goal.garment):
+            print(f"{goal.id}  [{goal.type}]\n    {goal.text}")
