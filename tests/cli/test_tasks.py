@@ -4,7 +4,7 @@ def test_suites_and_their_tasks_are_listed(polyfold):
     assert "70 tasks" in suites.out
     assert "46 goals" in suites.out
     pants = polyfold("tasks", "polyfold70", "--garment", "pants").out
-    assert "pants-block-left-thirds  [P-Block, unseen]" in pants
+    assert "pants-block-left-thirds  [P-Block, seen]" in pants
     assert "fold leg outer left onto waist left and leg outer right onto waist right" in pants
     assert "tshirt" not in pants
     assert polyfold("tasks", "ambiguous", "--garment", "tshirt").out.count("[goal]") >= 7
