@@ -130,6 +130,8 @@ class _Assembler(OrderWords):
 
     def _on_verb(self, token: Token, at: int) -> None:
         value = token.value
+        if token.text == "tip" and self.role == "target":
+            return
         begun = self.frame.leads is not None and not self.frame.specific
         if token.form == "ing" and begun and self._lead_last:
             first, self.frame.leads = self.frame.leads, None
@@ -170,7 +172,7 @@ class _Assembler(OrderWords):
         if self._begins_clause(token):
             grasped = self.frame.moving if self.frame.verbs == ["grasp"] and not self.frame.placed else []
             if grasped:
-                self.frame.verbs, self.grasped = [], True
+                self.frame.verbs, self.frame.grasped, self.grasped = [], True, True
             else:
                 self._close()
         self.shaping = value == "make"
@@ -222,6 +224,9 @@ class _Assembler(OrderWords):
             phrase = replace(phrase, quantity=None, pronoun="them")
         if self.target_last and self.joined and len(frame.moving) > 1 and phrase.names_part:
             frame.targets.append(phrase)
+            return
+        if self.role == "held":  # "hold the hem at both ends"
+            self.role = "moving"
             return
         if self.spanning and self.joined:
             frame.axes.append(phrase)
@@ -320,6 +325,8 @@ class _Assembler(OrderWords):
             self.role = "axis" if self.role == "axis" or self._inside_axis() else "target"
         elif value == "to" and self._infinitive(at):
             self.purpose = True
+        elif token.text in ("at", "by") and self.frame.verbs == ["grasp"] and self.frame.specific:
+            self.role = "held"
         elif value in ("along", "down"):
             if (follows or described(self.tokens, at)) and self.role != "target":
                 lies = self.purpose and bool(self.frame.restated) and is_centre(self.tokens, at + 1)

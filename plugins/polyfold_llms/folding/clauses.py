@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from polyfold_llms.folding.clause import MIDDLE, Clause, ahead_of, parts_of
 from polyfold_llms.folding.flaps import fold_band, fold_corner, fold_corners, fold_edge, fold_edges, fold_sleeve
-from polyfold_llms.folding.folds import OPPOSITE_EDGE, Fold
+from polyfold_llms.folding.folds import OPPOSITE_CORNER, OPPOSITE_EDGE, Fold
 from polyfold_llms.folding.frames import WHOLES, Frame
 from polyfold_llms.folding.goals import MAX_HALVES, fold_in_fraction, fold_in_half
 from polyfold_llms.folding.lookahead import singled_out
@@ -27,7 +27,7 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
         frame, steps = replace(frame, times=1), frame.times
     frame = _paired(_begun(_inherited(frame, previous)))
     context = next((p for p in frame.moving if p.noun and p.noun not in WHOLES), None) or frame.context
-    moving = [part for phrase in _distinct(frame.moving) for part in parts_of(phrase, garment, "moving", context)]
+    moving = _moving_parts(_distinct(frame.moving), garment, context)
     excluded = {part for phrase in frame.excluded for part in parts_of(phrase, garment, "moving", context)}
     moving = [part for part in moving if part not in excluded]
     targets = [part for phrase in frame.targets for part in parts_of(phrase, garment, "target", context)]
@@ -64,6 +64,18 @@ def folds_of_frame(frame: Frame, garment: Garment, previous: Frame | None, steps
         folds += _fold_parts(moving, clause, ahead_of(garment, folds))
     _check_restated(frame, folds)
     return folds
+
+
+def _moving_parts(phrases: list[NounPhrase], garment: Garment, context: NounPhrase | None) -> list[Part]:
+    """The parts that move; *the top left corner and the one opposite* are two."""
+    found: list[Part] = []
+    for phrase in phrases:
+        lone = phrase.quantity == "opposite" and not (phrase.sides or phrase.plural or phrase.number == 2)
+        if lone and len(found) == 1 and found[0].what == "corner":
+            found.append(replace(found[0], which=OPPOSITE_CORNER[found[0].which]))
+        else:
+            found += parts_of(phrase, garment, "moving", context)
+    return found
 
 
 def _begun(frame: Frame) -> Frame:

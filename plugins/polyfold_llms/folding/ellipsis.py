@@ -9,9 +9,13 @@ from polyfold_llms.folding.phrases import NounPhrase
 
 __all__ = ["completed"]
 
+LINES = ("centre", "midline", "gap")
+"""Lines on which an edge may come to lie."""
+
 
 def completed(frames: list[Frame]) -> list[Frame]:
     """The clauses with what they leave out filled in from the one before or after."""
+    frames = _distributed(frames)
     return _announced(_forward(_merged([*map(_as_goal, frames[:1]), *frames[1:]])))
 
 
@@ -21,6 +25,26 @@ def _as_goal(frame: Frame) -> Frame:
         return frame
     rest = [phrase for phrase in frame.moving if phrase.noun != "triangle"]
     return replace(frame, moving=rest, leads=frame.leads if rest else None, goals=[*frame.goals, "triangle"])
+
+
+def _distributed(frames: list[Frame]) -> list[Frame]:
+    """*First the left sleeve, then the right one: each is folded in*: what is said of all, said of each."""
+    filled: list[Frame] = []
+    for frame in frames:
+        told = 0
+        while told < len(filled) and _only_names(filled[-1 - told]):
+            told += 1
+        them = frame.moving and all(p.pronoun == "them" and not p.names_part for p in frame.moving)
+        if them and told > 1 and frame.placed:
+            filled[-told:] = [replace(frame, moving=named.moving) for named in filled[-told:]]
+        else:
+            filled.append(frame)
+    return filled
+
+
+def _only_names(frame: Frame) -> bool:
+    said = frame.placed or frame.fractions or frame.goals or frame.same or frame.again or frame.negated
+    return frame.specific and not said and set(frame.verbs) <= {"grasp"}
 
 
 def _merged(frames: list[Frame]) -> list[Frame]:
@@ -37,6 +61,8 @@ def _merged(frames: list[Frame]) -> list[Frame]:
 
 def _with_previous(previous: Frame, frame: Frame) -> Frame | None:
     """Both clauses as one, or None if each stands on its own."""
+    if _laid_down(previous, frame):
+        return replace(_joined(previous, frame), directions=previous.directions + frame.directions)
     if _continues(previous, frame):
         return _joined(previous, frame)
     if previous.specific and frame.verbs[:1] == ["crease"] and not frame.specific:
@@ -45,6 +71,15 @@ def _with_previous(previous: Frame, frame: Frame) -> Frame | None:
     if creased or _goes_over(previous, frame):
         return replace(frame, axes=previous.axes + frame.axes)
     return None
+
+
+def _laid_down(previous: Frame, frame: Frame) -> bool:
+    """*Take the hem, bring it up, and lay it on the shoulders*: the last clause tells where the way ends."""
+    held = previous.grasped or "grasp" in previous.verbs
+    nowhere = all(phrase.garments and not phrase.names_part for phrase in previous.targets)
+    pronoun = bool(frame.moving) and all(p.pronoun and not p.names_part for p in frame.moving)
+    ends = any(phrase.names_part for phrase in frame.targets) or any(phrase.noun in LINES for phrase in frame.axes)
+    return held and nowhere and pronoun and ends and previous.specific and set(frame.verbs) <= {"move", "meet"}
 
 
 def _continues(previous: Frame, frame: Frame) -> bool:
@@ -81,6 +116,7 @@ def _joined(first: Frame, second: Frame) -> Frame:
         excluded=first.excluded + second.excluded,
         axes=first.axes + second.axes,
         manners=first.manners + second.manners,
+        grasped=first.grasped or second.grasped,
     )
 
 

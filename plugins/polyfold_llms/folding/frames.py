@@ -42,6 +42,7 @@ class Frame:
     leads: NounPhrase | None = None
     phrasal: bool = False
     announces: bool = False
+    grasped: bool = False
 
     @property
     def empty(self) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from polyfold_llms.folding.granting import folds_for_wish
 from polyfold_llms.folding.meaning import Meaning, understand
 from polyfold_llms.folding.parts import Garment, NotUnderstoodError
@@ -22,12 +24,24 @@ def plan(text: str, garment: Garment) -> Meaning:
     if wish is not None:
         return Meaning(tuple(folds_for_wish(wish, garment)), tuple(garment.notes))
     try:
-        return understand(text, garment)
+        return understand(_spelled_out(text, garment), garment)
     except NotUnderstoodError:
         wish = read_wish(text, _called(garment), folds_named=True)
         if wish is None:
             raise
         return Meaning(tuple(folds_for_wish(wish, garment)), tuple(garment.notes))
+
+
+def _spelled_out(text: str, garment: Garment) -> str:
+    """*A quarter of its size: left over right, then bottom over top*: the part that tells the folds, if one does."""
+    end, _, folds = text.partition(":")
+    if not folds or read_wish(end, _called(garment)) is None:
+        return text
+    try:
+        understand(folds, replace(garment, folds=[], notes=[]))
+    except NotUnderstoodError:
+        return text
+    return folds
 
 
 def _called(garment: Garment) -> frozenset[str]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from polyfold_llms.folding.assembly import frames_of
+from polyfold_llms.folding.chatter import plain_tokens
 from polyfold_llms.folding.clause import parts_of
 from polyfold_llms.folding.clauses import folds_of_frame
 from polyfold_llms.folding.ellipsis import completed
@@ -36,12 +37,13 @@ def understand(text: str, garment: Garment) -> Meaning:
         NotUnderstoodError: with the reason.
     """
     sentence = read(text)
-    request = frames_of(sentence.tokens)
+    tokens, passed = plain_tokens(sentence.tokens)
+    request = frames_of(tokens)
     _check_garment(request, garment)
     _check_words(request, sentence)
     for wrong, right in sentence.corrections:
         garment.note(f"I read “{wrong}” as “{right}”.")
-    for word in request.passed:
+    for word in (*passed, *request.passed):
         garment.note(f"I pass over the word “{word}”, which I do not know.")
     _give_context(request.frames)
     barred = _barred(request, garment)

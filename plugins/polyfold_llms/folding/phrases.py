@@ -108,7 +108,7 @@ def noun_phrase(tokens: Sequence[Token], at: int) -> tuple[NounPhrase, int]:
                 continue
             if found.noun or found.garments:
                 break
-            found = replace(found, pronoun=token.value)
+            found = replace(found, pronoun=token.value, plural=found.plural or token.text == "ones")
             at += 1
             break
         elif token.category == "join" and group and (_list_goes_on(found, tokens, at)):

@@ -77,6 +77,8 @@ def variants(word: str) -> tuple[tuple[str, str], ...]:
     ):  # fmt: skip
         if word.endswith(ending) and len(word) - len(ending) >= 2:
             stem = word[: -len(ending)]
+            if ending == "d" and stem[-1] != "e":
+                continue
             found.append((stem + added, form))
             if not added and len(stem) > 3 and stem[-1] == stem[-2]:
                 found.append((stem[:-1], form))
@@ -112,7 +114,9 @@ def spell(word: str, corrections: list[tuple[str, str]]) -> str:
             k + "s" for k in _vocabulary() if len(k) >= 5 and k[0] == word[0] and _one_edit(singular, k, False)
         )
     if len(near) > 1:
-        near = [known for known in near if known[0] == word[0] and len(known) == len(word)]
+        near = [known for known in near if known[0] == word[0] and len(known) == len(word)] or near
+    if len(near) > 1:
+        near = [known for known in near if known[-1] == word[-1]]
     if len(near) != 1:
         return word
     corrections.append((word, near[0]))

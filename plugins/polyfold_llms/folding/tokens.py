@@ -7,6 +7,7 @@ import unicodedata
 from dataclasses import dataclass
 
 from polyfold_llms.folding.lexicon import fillers, phrases
+from polyfold_llms.folding.rewording import reworded
 from polyfold_llms.folding.spelling import number_of, spell, variants
 
 __all__ = ["Sentence", "Token", "read"]
@@ -24,7 +25,7 @@ SIZE = re.compile(
     r"(?:\w+ )?(?:size|area|footprint)\b"
 )
 PLURAL_FOLDS = re.compile(r"\b(\w+)\s+(diagonal |half |simple |straight |single )?folds\b")
-SIMILE = re.compile(r"\blike (?!they do|you|i |it |to\b)[^,.;:]*")
+SIMILE = re.compile(r"\b(?:(?:make|making) it )?(?:looks? |looking )?like (?!they do|you|i |it |to\b)[^,.;:]*")
 SIMILES = {
     "shutter": "like shutters", "door": "like shutters", "cupboard": "like shutters", "gate": "like shutters",
     "window": "like shutters", "cabinet": "like shutters", "wardrobe": "like shutters", "book": "like a book",
@@ -133,7 +134,7 @@ def read(text: str) -> Sentence:
 
 def _plain(text: str) -> str:
     text = unicodedata.normalize("NFKD", text.lower()).replace("\u2019", "'").replace("\u2018", "'")
-    text = re.sub(r"\b(?:i|we)(?:'d| would)? like\b", " ", text)
+    text = reworded(re.sub(r"\b(?:i|we)(?:'d| would)? like\b", " ", text))
     text = re.sub(r"\blower (?=the |its |it\b)", "bring down ", text)
     text = NAMED_ASIDE.sub(" ", text)
     text = re.sub(r"\bi\.e\.|\be\.g\.", " ", text).replace("ontop", "on top")
