@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.errors import PlanError
 from polyfold.geometry import contour_of
 from polyfold.interfaces import Goal, Grounding, Planner, Policy, Segmenter
+from polyfold.recovery import Attempt, inspect
 from polyfold.types import Action, Decision, FoldLine, Observation, Scene, Subgoal
 
 __all__ = ["PolyFoldAgent"]
@@ -22,9 +23,9 @@ __all__ = ["PolyFoldAgent"]
 class PolyFoldAgent:
     """Splits the instruction, then per subgoal: ground the picture, plan a fold line, choose picks and places.
 
-    After each fold the next picture tells whether it took effect: the whole flap should have left its side of the line.
-    What is still there is folded again along the same line, a bounded number of times (the paper's method has no
-    recovery). A garment that was displaced is found again by the grounding.
+    After each fold the next picture tells whether it took effect (:mod:`polyfold.recovery`). Cloth that an arm missed
+    or left astray is carried to where it belongs; in other cases the policy folds what is still left of the line once
+    more. A fold is set right a bounded number of times. The line moves with a garment that was displaced.
     """
 
     requires: ClassVar[frozenset[str]] = frozenset({"instruction"})
@@ -39,6 +40,9 @@ class PolyFoldAgent:
         retries: int = Field(3, ge=0, le=10, description="times that one fold is repeated at most")
         remaining: float = Field(
             0.25, gt=0, lt=1, description="share of the flap's depth that, still left of the line, means a failed fold"
+        )
+        astray: float = Field(
+            0.22, gt=0, lt=1, description="share of the flap's depth by which cloth beyond the expected outline does"
         )
 
     def __init__(
@@ -67,9 +71,10 @@ class PolyFoldAgent:
             return None
         clock = time.perf_counter()
         mask = self._segmenter.segment(observation)
-        decision = self._repeated(mask, clock) or self._planned(observation, mask, clock)
-        self._tries = self._tries + 1 if decision is not None and decision.retry else 0
-        self._last = decision or self._last
+        decision = self._repeated(observation, mask, clock) or self._planned(observation, mask, clock)
+        if decision is not None:
+            self._tries = self._tries + 1 if decision.retry else 0
+            self._last = decision
         return decision
 
     def _planned(self, observation: Observation, mask: NDArray[np.bool_], clock: float) -> Decision | None:
@@ -91,29 +96,38 @@ class PolyFoldAgent:
         planned = time.perf_counter()
         action, line = self._act(plan, scene)
         self._pending.pop(0)
+        self._attempt = Attempt(observation, mask, line, action)
         seconds = {"grounding": grounded - clock, "language": planned - grounded, "policy": _since(planned)}
         return Decision(action, subgoal, line, scene, seconds)
 
     def _can_repeat(self) -> bool:
         return self._config.recover and self._last is not None and self._tries < self._config.retries
 
-    def _repeated(self, mask: NDArray[np.bool_], clock: float) -> Decision | None:
-        """The last fold again, on what is still left of its line; None if it took effect."""
+    def _repeated(self, observation: Observation, mask: NDArray[np.bool_], clock: float) -> Decision | None:
+        """What sets the last fold right; None if it took effect."""
         if not self._can_repeat():
             return None
-        last = self._last
+        last, attempt, config = self._last, self._attempt, self._config
         assert last is not None
         assert last.scene is not None
-        assert last.fold_line is not None
-        contour = contour_of(mask)
-        still_there = float(last.fold_line.distance(contour).max())
-        if still_there <= self._config.remaining * float(last.fold_line.distance(last.scene.contour).max()):
+        finding, motion = inspect(attempt, observation, mask, config.remaining, config.astray)
+        if finding is None:
             return None
-        # The model of the scene stays the one before the fold: that is what the next grounding starts from.
         looked = time.perf_counter()
-        action = self._policy.act(last.fold_line, replace(last.scene, mask=mask, contour=contour), self._rng)
+        line = motion.line(attempt.line)
+        action = finding.action or self._folded_again(line, last.scene, mask)
+        if action is None:
+            return None
+        # Line and scene stay those before the fold: that is what the next grounding starts from.
         seconds = {"grounding": looked - clock, "language": 0.0, "policy": _since(looked)}
         return replace(last, action=action, seconds=seconds, retry=True)
+
+    def _folded_again(self, line: FoldLine, scene: Scene, mask: NDArray[np.bool_]) -> Action | None:
+        """The policy's picks on what is still left of the line; None where it finds nothing to take there."""
+        try:
+            return self._policy.act(line, replace(scene, mask=mask, contour=contour_of(mask)), self._rng)
+        except PlanError:
+            return None
 
     def _act(self, plan: FoldLine | Action, scene: Scene) -> tuple[Action, FoldLine]:
         if isinstance(plan, FoldLine):

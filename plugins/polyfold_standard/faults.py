@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from dataclasses import replace
 from typing import Any
 
@@ -40,8 +41,11 @@ class FaultySimulator:
         self._inner: Any = create("simulators", config.inner)
 
     def reset(self, garment: Garment, seed: int) -> Observation:
-        """Lay the garment flat; the faults of the episode follow from the seed."""
-        self._rng = np.random.default_rng([seed, 7])
+        """Lay the garment flat; the faults follow from the seed and from all that is done.
+
+        Agents that act alike meet the same faults, and different tasks on one garment meet different ones.
+        """
+        self._history = zlib.crc32(str(seed).encode())
         return self._inner.reset(garment, seed)
 
     def observe(self) -> Observation:
@@ -51,6 +55,9 @@ class FaultySimulator:
     def execute(self, action: Action) -> Observation:
         """Do the fold with whatever goes wrong."""
         action.check_inside(self.observe().camera)
+        done = np.rint(np.vstack([action.picks, action.places])).astype(int).tolist()
+        self._history = zlib.crc32(str(done).encode(), self._history)
+        self._rng = np.random.default_rng([self._history, 7])
         holds = self._rng.random(action.arms) >= self._config.miss
         slips, displaced = self._rng.random(2) < (self._config.slip, self._config.displace)
         share = self._rng.uniform(0.3, 0.8) if slips else 1.0

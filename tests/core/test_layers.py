@@ -13,7 +13,7 @@ PLUGINS = sorted(path for path in (ROOT / "plugins").rglob("*.py"))
 
 ORDER = """
     errors geometry types polygon garments scoring interfaces hookspecs catalog plugins config prompts transcript goals
-    tasks ideal guidance store record view pictures episode agent judging sources folding
+    tasks ideal guidance store record view pictures episode recovery agent judging sources folding
     references attribution study thumbnails evaluation runner statistics tables plots results report benchmark cli
     __main__
 """.split()  # noqa: SIM905
