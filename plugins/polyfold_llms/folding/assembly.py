@@ -219,6 +219,7 @@ class _Assembler(OrderWords):
         frame = self.frame
         only_counts = phrase.quantity in ("each", "both", "all") and not (phrase.names_it or phrase.number)
         if only_counts and frame.moving:
+            frame.shared = not (frame.moving[-1].plural or frame.placed)
             return
         if only_counts:
             phrase = replace(phrase, quantity=None, pronoun="them")

@@ -31,6 +31,8 @@ def _distributed(frames: list[Frame]) -> list[Frame]:
     """*First the left sleeve, then the right one: each is folded in*: what is said of all, said of each."""
     filled: list[Frame] = []
     for frame in frames:
+        if frame.shared and filled and filled[-1].specific and not filled[-1].negated:
+            filled[-1], frame = _sharing(filled[-1], frame)
         told = 0
         while told < len(filled) and _only_names(filled[-1 - told]):
             told += 1
@@ -40,6 +42,19 @@ def _distributed(frames: list[Frame]) -> list[Frame]:
         else:
             filled.append(frame)
     return filled
+
+
+def _sharing(first: Frame, second: Frame) -> tuple[Frame, Frame]:
+    """*The right sleeve in, then the left, both straight*: what is said of both."""
+    noun = next((p.noun for p in first.moving if p.noun), None)
+    shared = replace(
+        first,
+        targets=first.targets or second.targets,
+        manners=first.manners or second.manners,
+        axes=first.axes or [replace(p, sides=()) for p in second.axes],
+        directions=first.directions or [d for d in second.directions if d in ("in", "over")],
+    )
+    return shared, replace(second, moving=[p if p.noun else replace(p, noun=noun) for p in second.moving])
 
 
 def _only_names(frame: Frame) -> bool:

@@ -43,6 +43,7 @@ class Frame:
     phrasal: bool = False
     announces: bool = False
     grasped: bool = False
+    shared: bool = False
 
     @property
     def empty(self) -> bool:

@@ -19,6 +19,7 @@ from polyfold_llms.folding.tokens import Sentence, read
 __all__ = ["Meaning", "understand"]
 
 MAX_FOLDS = 8
+AFTERCARE = {"smooth", "smooth out", "flatten", "straighten", "straighten out", "press flat"}
 NAMED = {"tshirt": "a t-shirt", "pants": "pants", "square": "a square cloth", "rectangle": "a rectangular cloth"}
 
 
@@ -39,6 +40,7 @@ def understand(text: str, garment: Garment) -> Meaning:
     sentence = read(text)
     tokens, passed = plain_tokens(sentence.tokens)
     request = frames_of(tokens)
+    request.frames = _without_aftercare(request.frames, garment)
     _check_garment(request, garment)
     _check_words(request, sentence)
     for wrong, right in sentence.corrections:
@@ -56,6 +58,17 @@ def understand(text: str, garment: Garment) -> Meaning:
     _check_turns(folds)
     _check_count(folds, request.steps)
     return Meaning(tuple(folds), tuple(garment.notes))
+
+
+def _without_aftercare(frames: list[Frame], garment: Garment) -> list[Frame]:
+    """Without *and smooth it down* at the end, which every fold is followed by anyway."""
+    last = frames[-1] if len(frames) > 1 else None
+    if last is None or not last.refused or last.specific or last.placed or last.unknown:
+        return frames
+    if set(last.refused) - AFTERCARE or not any(frame.specific and frame.placed for frame in frames[:-1]):
+        return frames
+    garment.note(f"I pass over “{last.refused[0]}”: folds are laid flat as they are made.")
+    return frames[:-1]
 
 
 def _check_garment(request: Request, garment: Garment) -> None:

@@ -203,10 +203,10 @@ def _unsided_corners(phrase: NounPhrase, garment: Garment, role: str) -> list[st
         if phrase.number == 2 or phrase.plural:
             garment.note("The instruction leaves open which two opposite corners; I take bottom left and top right.")
             return ["bottom_left", "top_right"]
-        if last is not None:
-            return [OPPOSITE_CORNER[last]]
         if role == "target":
             return ["opposite"]
+        if last is not None:
+            return [OPPOSITE_CORNER[last]]
         raise NotUnderstoodError("it is unclear which corner is opposite to which")
     if phrase.quantity == "adjacent":
         garment.note("The instruction leaves open which two neighbouring corners; I take the bottom ones.")

@@ -31,7 +31,9 @@ class SmallWords:
         raise NotImplementedError
 
     def _on_again(self, token: Token, at: int) -> None:
-        if token.value == "same":
+        if token.value == "same" and self.frame.specific and not (self.frame.verbs or self.frame.placed):
+            self.frame.too = True  # "then the right edge does likewise"
+        elif token.value == "same":
             if self.frame.verbs or self.frame.moving:
                 self._close()
             self.frame.same = True
