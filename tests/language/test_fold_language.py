@@ -11,12 +11,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from polyfold_llms.folding.folds import CORNERS, EDGES, OPPOSITE_CORNER, Fold, say
+from polyfold_llms.folding.instruction import plan
 from polyfold_llms.folding.meaning import understand
 from polyfold_llms.folding.parts import Garment, NotUnderstoodError
 from polyfold_planning.grammar import check_subgoal
 
-from polyfold.benchmark.language import accepted, judge_set, laid_garment, plan_ideally
+from polyfold.benchmark.language import accepted, judge_set, laid_garment, part_of_set, plan_ideally
 from polyfold.errors import RefusedError
+from polyfold.geometry import fill_polygon
+from polyfold.goals import OpenTask, measure
 from polyfold.plugins import create, find
 from polyfold.prompts import load_prompt
 from polyfold.tasks import load_suite
@@ -84,6 +87,79 @@ def test_instructions_of_another_hand_are_understood_nearly_always(planner, rule
     meant = [outcome for outcome in outcomes if outcome.expected]
     assert sum(outcome.result == "as intended" for outcome in meant) >= 0.95 * len(meant)
     assert all(outcome.result == "refused" for outcome in outcomes if not outcome.expected)
+
+
+def test_developed_manners_of_speaking_are_understood_and_seldom_mistaken(planner, rules, suite):
+    """The developed part; before the grammar was widened on it, it scored 57.7 % of 234, and 6.0 % other folds."""
+    content = tomllib.loads((Path(__file__).parent / "sentences.toml").read_text("utf-8"))
+    outcomes = judge_set(part_of_set(content, held_out=False), suite, planner, rules)
+    meant = [outcome.result for outcome in outcomes if outcome.expected]
+    assert meant.count("as intended") >= 0.85 * len(meant)
+    assert meant.count("other folds") <= 0.03 * len(meant)
+
+
+def silhouette(model, size: tuple[int, int]) -> np.ndarray:
+    pieces = [fill_polygon(facet.polygon, size[1], size[0]) for facet in model.facets()]
+    return np.any(pieces, axis=0)
+
+
+def reaches(goal: OpenTask, planner, rules, suite) -> bool:
+    laid = laid_garment(goal.garment, 2001)
+    try:
+        lines = plan_ideally(goal.text, laid, planner, rules)
+    except RefusedError:
+        return False
+    if goal.accept and accepted(laid, lines, goal.accept, suite, unordered=False):
+        return True
+    end = laid.model
+    for line in lines:
+        end = end.fold(line)
+    measured = measure(silhouette(end, laid.size), silhouette(laid.model, laid.size), len(lines))
+    return goal.done is not None and not goal.done.failing(measured)
+
+
+def test_developed_goals_are_nearly_all_reached(planner, rules, suite):
+    """Goals without a way; before ends were compared, 23 of 90 were reached."""
+    content = tomllib.loads((Path(__file__).parent / "goals.toml").read_text("utf-8"))
+    missed = [goal["id"] for goal in content["goal"] if not reaches(OpenTask(**goal), planner, rules, suite)]
+    assert len(missed) <= 0.1 * len(content["goal"]), missed
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "folds"),
+    [
+        ("square", "Would you be so kind as to bring the BL corner to the centre?",
+         [Fold("corner", "bottom_left", "centre")]),
+        ("square", "Whoosh, plunk the top left corner onto the bottom right one.",
+         [Fold("corner", "top_left", "bottom_right")]),
+        ("rectangle", "With the left half folded onto the right one already, fold the top down to the bottom.",
+         [Fold("half", "left"), Fold("half", "top")]),
+        ("rectangle", "A quarter of the area: first left over right, then bottom over top.",
+         [Fold("half", "left"), Fold("half", "bottom")]),
+        ("tshirt", "Right sleeve in, neck to armpit.", [Fold("sleeve", "right", manner="slanted")]),
+        ("tshirt", "Take the hem, lift it up, and finally put it on the shoulders.", [Fold("half", "bottom")]),
+        ("pants", "I need them half as wide for my trip.", [Fold("half", "left")]),
+        ("square", "A triangle for the picnic, a quarter of the size.",
+         [Fold("corner", "bottom_left", "top_right"), Fold("corner", "top_left", "bottom_right")]),
+    ],
+)  # fmt: skip
+def test_wording_makes_no_difference(kind, text, folds):
+    assert list(plan(text, Garment(kind, FAMILIES[kind])).folds) == folds
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "words"),
+    [
+        ("square", "Make it a third of its size and triangular.", "triangle"),
+        ("tshirt", "An eighth of the area in one fold.", "no way"),
+        ("square", "Turn it into a swan.", "swan"),
+        ("square", "Put the cloth in the drawer.", "carry|do not understand|else"),
+        ("tshirt", "Glue the left sleeve to the body.", "glue"),
+    ],
+)
+def test_wishes_that_nothing_grants_are_refused(kind, text, words):
+    with pytest.raises(NotUnderstoodError, match=words):
+        plan(text, Garment(kind, FAMILIES[kind]))
 
 
 @settings(max_examples=12, deadline=None)

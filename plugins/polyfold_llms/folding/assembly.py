@@ -130,7 +130,8 @@ class _Assembler(OrderWords):
 
     def _on_verb(self, token: Token, at: int) -> None:
         value = token.value
-        if token.text == "tip" and self.role == "target":
+        if token.text == "tip" and at and self.tokens[at - 1].is_("prep", "to"):
+            self.role = "target"
             return
         begun = self.frame.leads is not None and not self.frame.specific
         if token.form == "ing" and begun and self._lead_last:
@@ -194,6 +195,7 @@ class _Assembler(OrderWords):
             (not frame.specific and (frame.fractions or frame.goals or frame.axes or (self.comma and frame.manners)))
             or (self.comma and frame.specific and bool(frame.verbs))
         )
+        explains = explains or (token.form == "past" and self.comma and frame.specific and "meet" in frame.verbs)
         if explains:
             self.purpose = True
         complete = frame.specific and frame.placed and token.form == "base" and token.value in ("fold", "move", "turn")
@@ -331,7 +333,7 @@ class _Assembler(OrderWords):
         elif value in ("along", "down"):
             if (follows or described(self.tokens, at)) and self.role != "target":
                 lies = self.purpose and bool(self.frame.restated) and is_centre(self.tokens, at + 1)
-                placing = (self.laying and token.text in ("along", "at")) or lies
+                placing = (self.laying and token.text in ("along", "at", "down along")) or lies
                 self.role = "target" if placing else "axis"
         elif value == "from":
             self.frame.from_source = not self.frame.axes

@@ -92,7 +92,8 @@ def _laid_down(previous: Frame, frame: Frame) -> bool:
     """*Take the hem, bring it up, and lay it on the shoulders*: the last clause tells where the way ends."""
     held = previous.grasped or "grasp" in previous.verbs
     nowhere = all(phrase.garments and not phrase.names_part for phrase in previous.targets)
-    pronoun = bool(frame.moving) and all(p.pronoun and not p.names_part for p in frame.moving)
+    named = frame.moving or frame.restated
+    pronoun = bool(named) and all(p.pronoun and not p.names_part for p in named)
     ends = any(phrase.names_part for phrase in frame.targets) or any(phrase.noun in LINES for phrase in frame.axes)
     return held and nowhere and pronoun and ends and previous.specific and set(frame.verbs) <= {"move", "meet"}
 
@@ -149,6 +150,8 @@ def _forward(frames: list[Frame]) -> list[Frame]:
         if following.verbs and not bare and any(p.noun == "sleeve" for p in frame.moving):
             continue
         nouns = {p.noun for p in following.moving}
+        if all(p.noun is None and p.pronoun == "one" for p in following.moving) and not bare:
+            nouns = {p.noun for p in frame.moving}  # "the right sleeve first and then the left one"
         noun = next(iter(nouns))
         meant = frame.context.noun if frame.context is not None and not bare else noun
         if all(p.noun in nouns or (p.noun is None and meant == noun) for p in frame.moving):

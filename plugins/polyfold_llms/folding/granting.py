@@ -171,8 +171,8 @@ def _lies(outcome: Outcome, side: str) -> bool:
 
 def _suits(outcome: Outcome, purpose: str, wish: Wish, garment: Garment) -> bool:
     if purpose == "pile":
-        neat = outcome.rectangular > 0.85 and outcome.slim > 0.3
-        return neat and (wish.sized or outcome.area <= _small(wish, garment))
+        small = wish.sized or (outcome.area <= _small(wish, garment) and outcome.slim > 0.3)
+        return outcome.rectangular > 0.85 and small
     if purpose == "hang":
         return wish.sized or outcome.width < 0.6
     if purpose == "table":

@@ -36,6 +36,7 @@ _DONE = re.compile(
 """*With the left half folded onto the right, bring the top down*: the first fold is told as a state."""
 
 _LINE = (
+    r"(?:, (?:fold|crease) (?=runs?|running|goes|going))?"
     r"(?:[,(:]? ?\b(?:along|about|at|on|over|by|with|around|following)\b )?"
     r"(?:\b(?:a|the|its|their|each|one|both|these|respective|straight|slanting|slanted|oblique|inward|imaginary) )*"
     r"(?:(?<=[a-z] )(?:lines?|creases?|segments?|folds?|seams?|diagonals?) )?"
@@ -54,6 +55,12 @@ _SLEEVE_LINES = (
 )
 """The two lines along which sleeves are folded, however their ends are listed."""
 
+_ALIGNED = re.compile(
+    r"(?:, ?(?:and )?| and )(?P<part>(?:left|right|top|bottom|upper|lower)|[a-z]+ (?:corner|edge|end|side))"
+    r" (?:on|onto|over|to) (?P=part)\b(?! (?:corner|edge|half|side|one|sleeve|leg))"
+)
+"""*Waistband corner on waistband corner*: how parts that are folded together lie anyway."""
+
 _SPEAKERS = frozenset(["i", "we", "you", "me", "us", "it", "someone"])
 _LEADS_TO_YOU = frozenset(["if", "whether", "that", "should", "could", "would", "can"])
 _HELPERS = frozenset(["could", "would", "can", "might", "were", "to", "please", "just", "kindly"])
@@ -68,6 +75,7 @@ def reworded(text: str) -> str:
     text = _MIND.sub(" ", text)
     text = _AS_BEFORE.sub(" ", _IN_THE_END.sub(" ", text))
     text = _DONE.sub(lambda found: f"{found['verb']} {found['part']} {found['where']}, then ", text)
+    text = _ALIGNED.sub(" ", text)
     for pattern in _SLEEVE_LINES:
         text = pattern.sub(_sleeve_line, text)
     return re.sub(r"[^.;!?]+", lambda sentence: _without_courtesy(sentence.group(0)), text)

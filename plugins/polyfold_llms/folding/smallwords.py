@@ -88,7 +88,7 @@ class SmallWords:
             self.frame.unknown.append("or")
         elif led is not None:
             self.frame.leads, self.skip_to = led
-        elif token.value == "colon" and self.frame.specific and (self.frame.verbs or self.frame.placed):
+        elif token.value == "colon" and self._complete():
             self._close("sentence")
         elif token.value == "colon" and self._announces(at):
             self.frame.announces = True
@@ -98,6 +98,11 @@ class SmallWords:
             if split:
                 self._close("sentence")
             self.purpose = bool(self.frame.fractions or self.frame.goals or self.frame.axes)
+
+    def _complete(self) -> bool:
+        """Whether what stands before a colon says enough on its own: a part and its place, or *like a cupboard*."""
+        named = {"cupboard", "envelope"} & set(self.frame.manners)
+        return bool(named or (self.frame.specific and (self.frame.verbs or self.frame.placed)))
 
     def _announces(self, at: int) -> bool:
         """``fold it into a block: right sleeve in, left sleeve in, hem up``: what follows spells out several folds."""

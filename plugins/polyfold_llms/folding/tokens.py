@@ -25,7 +25,9 @@ SIZE = re.compile(
     r"(?:\w+ )?(?:size|area|footprint)\b"
 )
 PLURAL_FOLDS = re.compile(r"\b(\w+)\s+(diagonal |half |simple |straight |single )?folds\b")
-SIMILE = re.compile(r"\b(?:(?:make|making) it )?(?:looks? |looking )?like (?!they do|you|i |it |to\b)[^,.;:]*")
+SIMILE = re.compile(
+    r"\b(?:(?:make|making) it )?(?:looks? |looking )?like (?!they do|you|i |it |to\b|that\b|this\b)[^,.;:]*"
+)
 SIMILES = {
     "shutter": "like shutters", "door": "like shutters", "cupboard": "like shutters", "gate": "like shutters",
     "window": "like shutters", "cabinet": "like shutters", "wardrobe": "like shutters", "book": "like a book",
