@@ -17,31 +17,29 @@ __all__ = ["MPPE", "MIoU", "MovedPartError"]
 Floats = NDArray[np.float64]
 
 
+class _Alignable(BaseModel):
+    """Parameters that all metrics share."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    align: bool = Field(False, description="move and turn the result rigidly onto the reference first")
+
+
 class MPPE:
     """Mean particle position error [mm]: mean distance of corresponding particles, best of the references."""
 
     unit: ClassVar[str] = "mm"
     higher_is_better: ClassVar[bool] = False
 
-    class Config(BaseModel):
+    class Config(_Alignable):
         """Parameters."""
-
-        model_config = ConfigDict(frozen=True, extra="forbid")
-
-        align: bool = Field(False, description="move and turn the result rigidly onto the reference first")
 
     def __init__(self, config: Config | None = None) -> None:
         self._align = (config or self.Config()).align
 
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
         """The error against the nearest reference."""
-        return min(self._against(result, reference) for reference in references)
-
-    def _against(self, result: Outcome, reference: Outcome) -> float:
-        positions = result.end.positions
-        if self._align:
-            positions = _aligned(positions, reference.end.positions)
-        return 1000.0 * float(np.linalg.norm(positions - reference.end.positions, axis=1).mean())
+        return min(float(_errors(result, reference, self._align).mean()) for reference in references)
 
 
 class MIoU:
@@ -50,9 +48,18 @@ class MIoU:
     unit: ClassVar[str] = ""
     higher_is_better: ClassVar[bool] = True
 
+    class Config(_Alignable):
+        """Parameters."""
+
+    def __init__(self, config: Config | None = None) -> None:
+        self._align = (config or self.Config()).align
+
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
         """The overlap with the nearest reference."""
-        return max(iou(result.mask, reference.mask) for reference in references)
+        return max(iou(self._mask(result, reference), reference.mask) for reference in references)
+
+    def _mask(self, result: Outcome, reference: Outcome) -> NDArray[np.bool_]:
+        return _aligned_mask(result, reference) if self._align else result.mask
 
 
 class MovedPartError:
@@ -61,15 +68,14 @@ class MovedPartError:
     unit: ClassVar[str] = "mm"
     higher_is_better: ClassVar[bool] = False
 
-    class Config(BaseModel):
+    class Config(_Alignable):
         """Parameters."""
-
-        model_config = ConfigDict(frozen=True, extra="forbid")
 
         moved_mm: float = Field(20.0, gt=0, description="travel in the reference from which a particle counts [mm]")
 
     def __init__(self, config: Config | None = None) -> None:
-        self._moved = (config or self.Config()).moved_mm / 1000.0
+        config = config or self.Config()
+        self._align, self._moved = config.align, config.moved_mm / 1000.0
 
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
         """The error against the nearest reference; NaN if that moved nothing."""
@@ -78,16 +84,37 @@ class MovedPartError:
     def _against(self, result: Outcome, reference: Outcome) -> float:
         travel = np.linalg.norm(reference.end.positions - reference.start.positions, axis=1)
         moved = travel > self._moved
-        if not moved.any():
-            return float("nan")
-        return 1000.0 * float(np.linalg.norm((result.end.positions - reference.end.positions)[moved], axis=1).mean())
+        return float(_errors(result, reference, self._align)[moved].mean()) if moved.any() else float("nan")
 
 
-def _aligned(points: Floats, target: Floats) -> Floats:
-    """Points [m], shape (N, 3), turned about the vertical and moved to fit ``target`` best (Kabsch in the plane)."""
-    centre, goal = points.mean(axis=0), target.mean(axis=0)
-    a, b = (points - centre)[:, :2], (target - goal)[:, :2]
+def _errors(result: Outcome, reference: Outcome, align: bool) -> Floats:
+    """Distance [mm] of every particle from where the reference has it, shape (N,)."""
+    positions, wanted = result.end.positions, reference.end.positions
+    if align:
+        turn, shift = _rigid(positions, wanted)
+        positions = np.column_stack([positions[:, :2] @ turn + shift, positions[:, 2]])
+    return 1000.0 * np.linalg.norm(positions - wanted, axis=1)
+
+
+def _aligned_mask(result: Outcome, reference: Outcome) -> NDArray[np.bool_]:
+    """The result's silhouette as the camera would see it after the rigid motion that fits its particles best."""
+    import cv2
+
+    turn, shift = _rigid(result.end.positions, reference.end.positions)
+    camera = result.end.camera
+    corners = np.array([[0.0, 0.0], [camera.width, 0.0], [0.0, camera.height]])
+    moved = camera.to_pixels(camera.to_world(corners)[:, :2] @ turn + shift)
+    matrix = cv2.getAffineTransform(corners.astype(np.float32), moved.astype(np.float32))
+    size = (camera.width, camera.height)
+    return cv2.warpAffine(result.mask.astype(np.uint8), matrix, size, flags=cv2.INTER_NEAREST).astype(bool)
+
+
+def _rigid(points: Floats, target: Floats) -> tuple[Floats, Floats]:
+    """Turn, shape (2, 2), and shift [m], shape (2,), that bring points [m], shape (N, 3), nearest to ``target`` on the
+    table: ``points[:, :2] @ turn + shift`` (Kabsch in the plane)."""
+    centre, goal = points[:, :2].mean(axis=0), target[:, :2].mean(axis=0)
+    a, b = points[:, :2] - centre, target[:, :2] - goal
     angle = np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
     c, s = np.cos(angle), np.sin(angle)
-    turned = (points - centre) @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    return turned + goal
+    turn = np.array([[c, s], [-s, c]])
+    return turn, goal - centre @ turn

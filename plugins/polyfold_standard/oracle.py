@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
-
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 

@@ -50,3 +50,15 @@ def test_alignment_forgives_a_rigid_motion_only_when_asked():
     result = Outcome(reference.start, end, reference.mask)
     assert scores(result, reference)["mppe"] > 50
     assert scores(result, reference, mppe={"align": True})["mppe"] == pytest.approx(0, abs=1e-6)
+
+
+def test_aligned_overlap_and_moved_part_forgive_a_turn_too():
+    reference = outcome("oracle", TASKS[0])
+    quarter = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    turned = reference.end.positions @ quarter
+    end = polyfold.types.SimState(turned, reference.end.velocities, reference.end.keypoints, reference.end.camera)
+    result = Outcome(reference.start, end, np.rot90(reference.mask))
+    plain = scores(result, reference)
+    aligned = scores(result, reference, **{"miou": {"align": True}, "moved-part": {"align": True}})
+    assert aligned["miou"] > 0.98 > plain["miou"]
+    assert aligned["moved-part"] < 1e-6 < 50 < plain["moved-part"]
