@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from math import log
 
-from polyfold_llms.folding.folds import Fold
+from polyfold_llms.folding.folds import OPPOSITE_CORNER, Fold
 from polyfold_llms.folding.outcomes import Outcome, outcomes
 from polyfold_llms.folding.parts import Garment, NotUnderstoodError
-from polyfold_llms.folding.wishes import Bound, Wish
+from polyfold_llms.folding.wish import Bound, Wish
 
 __all__ = ["folds_for_wish"]
 
@@ -139,6 +139,9 @@ _LOOKS: dict[str, Callable[[Outcome], bool]] = {
     "shorts": lambda outcome: outcome.worn and _moved_edges(outcome) == ["bottom"],
     "sleeveless": lambda outcome: _actions(outcome) == ["sleeve", "sleeve"],
     "oneleg": lambda outcome: outcome.worn and _moved_edges(outcome) in (["left"], ["right"]),
+    "onesleeve": lambda outcome: _actions(outcome) == ["sleeve"],
+    "mirrored": lambda outcome: _moved_edges(outcome) in (["left"], ["right"]),
+    "hexagon": lambda outcome: len(outcome.folds) == 2 and _opposite_ears(outcome),
     "threequarter": lambda outcome: _actions(outcome) == ["band"],
 }
 """What things look like, told by the folds that make them."""
@@ -147,6 +150,11 @@ _LOOKS: dict[str, Callable[[Outcome], bool]] = {
 def _pointed(outcome: Outcome) -> bool:
     """Whether both corners of one edge are folded in."""
     return len(_ears(outcome)) == len(outcome.folds) == 2 and len(outcome.points) == 1
+
+
+def _opposite_ears(outcome: Outcome) -> bool:
+    ears = _ears(outcome)
+    return len(ears) == 2 and OPPOSITE_CORNER[ears[0]] == ears[1]
 
 
 def _moved_edges(outcome: Outcome) -> list[str]:

@@ -34,6 +34,8 @@ def _quad() -> Iterator[Sequence]:
     for edge in ("bottom", "left", "top", "right"):
         yield _thirds(edge)
         yield (*_thirds(edge), _half(ACROSS[edge][0]))
+        yield (*_thirds(edge), *_thirds(ACROSS[edge][0]))
+        yield (Fold("band", edge, share=1 / 3),)
     yield from _cornered()
 
 
@@ -56,6 +58,8 @@ def _cornered() -> Iterator[Sequence]:
         yield (_dog_ear(corner),)
     for edge in EDGES:
         yield tuple(_dog_ear(corner) for corner in CORNERS if edge in corner.split("_"))
+    for corner in ("bottom_left", "top_left"):
+        yield _dog_ear(corner), _dog_ear(OPPOSITE_CORNER[corner])
     yield tuple(_dog_ear(corner) for corner in CORNERS)
 
 
@@ -73,6 +77,7 @@ def _tshirt() -> Iterator[Sequence]:
         yield (*sleeves, _half("bottom"))
         yield (*sleeves, _half("left"))
         yield (*sleeves, *_thirds("bottom"))
+        yield (*sleeves, _half("left"), *_thirds("bottom"))
         yield (*sleeves, _half("bottom"), _half("bottom", again=True))
 
 
@@ -84,6 +89,7 @@ def _pants() -> Iterator[Sequence]:
         yield _half(edge), _half("top")
         yield _half(edge), _half("bottom"), _half("bottom", again=True)
         yield (_half(edge), *_thirds("bottom"))
+        yield (_half(edge), *(_half("bottom", again=index > 0) for index in range(3)))
     yield _half("bottom"), _half("left")
     yield (Fold("band", "bottom", share=0.25),)
 
