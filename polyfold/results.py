@@ -42,6 +42,12 @@ class Results:
         found = {record["garment"] for record in self.records}
         return [kind for kind in KINDS if kind in found] + sorted(found - set(KINDS))
 
+    def of_length(self, steps: str) -> Results:
+        """Only the episodes whose task has one fold (``single``) or several (``multi``)."""
+        wanted = {"single": lambda count: count == 1, "multi": lambda count: count > 1}[steps]
+        kept = [r for r in self.records if r["steps_wanted"] is not None and wanted(r["steps_wanted"])]
+        return Results(self.study, kept)
+
     def plot(self, column: str = "success %") -> Any:
         """Bars per garment kind and variant with intervals, as a matplotlib figure."""
         from polyfold.plots import bars

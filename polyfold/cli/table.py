@@ -17,6 +17,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--by", choices=["kind", "type", "task", "split", "step", "none"], default="kind", help="default: kind"
     )
+    parser.add_argument("--steps", choices=["single", "multi"], help="only tasks of one fold, or of several")
     parser.add_argument("--compare", nargs=2, metavar=("VARIANT", "BASELINE"), help="paired differences instead")
     parser.add_argument(
         "--noise-floor", type=Path, metavar="DIR", help="run directory of experiments/noise_floor.toml; a footnote"
@@ -28,6 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
     from polyfold.results import compare, open_results, table
 
     found = open_results(arguments.out)
+    found = found.of_length(arguments.steps) if arguments.steps else found
     noise = None if arguments.noise_floor is None else open_results(arguments.noise_floor)
     made = compare(found, *arguments.compare) if arguments.compare else table(found, groups=arguments.by, noise=noise)
     print(getattr(made, arguments.format)())

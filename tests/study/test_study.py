@@ -216,6 +216,8 @@ def test_tables_by_step_and_beside_published_figures(tmp_path):
     settings = {"tasks": ("square-corner-top_left", "square-corners-*left*right*"), "garments": 1}
     study = polyfold.Study(**{**SMALL, **settings}, published={"paper": {"square": 94.0, "pants": 79.6}})
     results = polyfold.run(study, tmp_path, progress=False)
+    assert {record["task"] for record in results.of_length("single").records} == {"square-corner-top_left"}
+    assert len(results.of_length("single").records) + len(results.of_length("multi").records) == len(results.records)
     by_step = polyfold.table(results, groups="step").markdown()
     assert "step 2" in by_step
     assert "| paper | square | – | – | – | – | 94.0 | – |" in polyfold.table(results).markdown()
