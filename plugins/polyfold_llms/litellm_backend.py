@@ -16,6 +16,7 @@ import copy
 import os
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -88,7 +89,9 @@ class LiteLLM:
         request = self._request(messages, params)
         config = self._config
         patience = Patience(config.tries, config.first_wait_s, config.longest_wait_s)
-        answer = call(lambda: self._attempt(request), patience, f"the model {self.model!r}")
+        server = self._api_base or self.model.partition("/")[0]
+        place = partial(slot, server, config.concurrency)
+        answer = call(lambda: self._attempt(request), patience, f"the model {self.model!r}", place)
         return self._reply(answer)
 
     def _check_pictures(self, messages: Sequence[Message]) -> None:
@@ -129,16 +132,14 @@ class LiteLLM:
         from polyfold_llms.client import library
 
         litellm = library()
-        server = self._api_base or self.model.partition("/")[0]
         fault = None
-        with slot(server, self._config.concurrency):
-            try:
-                # litellm writes into what it is given.
-                response = litellm.completion(**copy.deepcopy(dict(request)), **self._destination())
-            except litellm.ContentPolicyViolationError:
-                return None
-            except Exception as error:
-                fault = _fault(error)
+        try:
+            # litellm writes into what it is given.
+            response = litellm.completion(**copy.deepcopy(dict(request)), **self._destination())
+        except litellm.ContentPolicyViolationError:
+            return None
+        except Exception as error:
+            fault = _fault(error)
         if fault is not None:
             raise fault
         _check_answered(response)

@@ -28,7 +28,7 @@ import random
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from email.utils import parsedate_to_datetime
 from typing import Any, Generic, TypeVar
@@ -101,7 +101,11 @@ class Answer(Generic[Result]):
 
 
 def call(
-    attempt: Callable[[], Result], patience: Patience, what: str, sleep: Callable[[float], None] = time.sleep
+    attempt: Callable[[], Result],
+    patience: Patience,
+    what: str,
+    place: Callable[[], AbstractContextManager[None]] = nullcontext,
+    sleep: Callable[[float], None] = time.sleep,
 ) -> Answer[Result]:
     """Make a call, again where that may help.
 
@@ -109,6 +113,7 @@ def call(
         attempt: makes one try; raises TransportError.
         patience: how often and how long.
         what: names the model in errors.
+        place: is held during a try; waiting for it counts as waiting, not as latency.
         sleep: waits.
 
     Raises:
@@ -118,13 +123,14 @@ def call(
     began = time.perf_counter()
     faults: list[str] = []
     while True:
-        clock = time.perf_counter()
         fault = None
-        try:
-            result = attempt()
-        except TransportError as caught:
-            fault = caught
-        now = time.perf_counter()
+        with place():
+            clock = time.perf_counter()
+            try:
+                result = attempt()
+            except TransportError as caught:
+                fault = caught
+            now = time.perf_counter()
         if fault is None:
             return Answer(result, len(faults) + 1, now - clock, now - began, tuple(faults))
         faults.append(fault.text)

@@ -94,7 +94,7 @@ def test_waits_double_with_jitter_and_never_exceed_a_minute():
 
     pauses = []
     with pytest.raises(LLMError, match="4 tries"):
-        call(attempt, Patience(), "the model", pauses.append)
+        call(attempt, Patience(), "the model", sleep=pauses.append)
     assert len(pauses) == 3
     for number, pause in enumerate(pauses):
         assert 0.5 * 2**number <= pause <= 1.5 * 2**number
