@@ -21,16 +21,20 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from polyfold.errors import LLMAccessError
+from polyfold.errors import ConfigError, LLMAccessError
 from polyfold.interfaces import Message, Reply
 from polyfold_llms import models
-from polyfold_llms.keys import scrub, scrubbed
+from polyfold_llms.keys import contains_secret, scrub, scrubbed
 from polyfold_llms.transport import Patience, TransportError, call, header, slot
 
 __all__ = ["LiteLLM"]
 
 LONGEST_FAULT = 300
 _WRAPPING = re.compile(r"^(litellm\.)?[\w. :]*?(\w+Exception - |Error: |Timeout: )(?!.*Exception - )")
+OURS = frozenset(
+    {"model", "messages", "api_key", "api_base", "base_url", "timeout", "stream"}
+    | {"max_retries", "num_retries", "fallbacks", "caching", "extra_headers", "headers"}
+)
 COUNTED = ("prompt_tokens", "completion_tokens", "total_tokens")
 
 
@@ -56,6 +60,7 @@ class LiteLLM:
         concurrency: int = Field(8, ge=1, le=256, description="calls under way at once, per process and server")
 
     def __init__(self, config: Config) -> None:
+        _check_settings(config)
         models.check_known(config.model, config.api_base, config.unlisted)
         self._config = config
         self._api_base = config.api_base or models.local_address(config.model)
@@ -176,6 +181,20 @@ class LiteLLM:
             "model_served": str(response.model or ""),
         }
         return Reply(**scrubbed(reply), usage=usage, cost=cost, cost_source=source, **timing)
+
+
+def _check_settings(config: LiteLLM.Config) -> None:
+    """Refuse settings that would leave a key in run directories, or work against the transport."""
+    if contains_secret(config.model_dump_json()):
+        raise ConfigError(
+            "a key stands among the parameters of 'litellm', which are written to disk; take it out, and put it into "
+            "the environment (key_env names the variable)"
+        )
+    if taken := sorted(OURS & config.params.keys()):
+        raise ConfigError(
+            f"params of 'litellm' may not set {', '.join(taken)}; use the backend's own parameters (model, api_base, "
+            "key_env, timeout_s, tries), and put keys into the environment"
+        )
 
 
 def _has_picture(message: Message) -> bool:

@@ -17,7 +17,7 @@ from polyfold_llms.models import models
 from polyfold_llms.rules import RulesLLM
 
 from polyfold.cli import main
-from polyfold.errors import LLMAccessError
+from polyfold.errors import ConfigError, LLMAccessError
 from polyfold.plugins import create
 from polyfold.results import run
 from polyfold.store import read_episodes
@@ -86,6 +86,21 @@ def test_a_key_goes_to_its_own_provider_only(server, monkeypatch):
     connect(server).complete(QUESTION, {})
     connect(server, key_env="OPENAI_API_KEY").complete(QUESTION, {})
     assert [FAKE_KEY in received.headers["Authorization"] for received in server.received] == [False, True]
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"params": {"api_key": "anything"}},
+        {"params": {"num_retries": 3}},
+        {"params": {"user": FAKE_KEY}},
+        {"api_base": f"http://127.0.0.1/{FAKE_KEY}"},
+    ],
+)
+def test_parameters_hold_no_key_and_no_transport(server, settings):
+    with pytest.raises(ConfigError, match="environment") as caught:
+        create("llms", f"litellm:{ROUTES[1]}", settings)
+    assert FAKE_KEY not in str(caught.value)
 
 
 @pytest.mark.parametrize("route", ["hosted_vllm/llama", "lm_studio/llama", "llamafile/llama", "openai/llama"])
@@ -218,6 +233,15 @@ def test_a_run_with_a_key_leaves_it_nowhere_on_disk(server, tmp_path):
     assert FAKE_KEY[:18] not in printed.getvalue()
 
 
+def test_a_study_with_a_key_leaves_it_nowhere_on_disk(server, tmp_path):
+    server.script = lambda request: error(400, f"bad request by {request.headers['Authorization']}")
+    study = study_of(server, "echo", key_env="OPENROUTER_API_KEY")
+    records = run(study, tmp_path / "run", progress=False).records
+    assert ["bad request by" in record["failure"]["reason"] for record in records] == [True, True]
+    assert len(server.received) == 2
+    assert files_with(FAKE_KEY[:18], tmp_path) == []
+
+
 def test_secrets_are_recognised_by_value_and_by_form(monkeypatch):
     monkeypatch.setenv("MY_SERVICE_TOKEN", "correct-horse-battery")
     assert scrub("a correct-horse-battery b") == "a [hidden] b"
@@ -227,8 +251,8 @@ def test_secrets_are_recognised_by_value_and_by_form(monkeypatch):
         assert not contains_secret(harmless)
 
 
-def study_of(server, name):
-    inner = {"name": f"litellm:{ROUTES[0]}", "api_base": server.address, "first_wait_s": 0.01}
+def study_of(server, name, **settings):
+    inner = {"name": f"litellm:{ROUTES[0]}", "api_base": server.address, "first_wait_s": 0.01, **settings}
     tasks = ("square-triangle-bottom_left", "square-triangle-top_left")
     return Study(name=name, tasks=tasks, first_seed=2001, edge_length=0.04, base={"llm": inner})
 
