@@ -96,7 +96,8 @@ class LiteLLM:
         patience = Patience(config.tries, config.first_wait_s, config.longest_wait_s)
         server = self._api_base or self.model.partition("/")[0]
         place = partial(slot, server, config.concurrency)
-        answer = call(lambda: self._attempt(request), patience, f"the model {self.model!r}", place)
+        what = f"the model {self.model!r}" + (f" at {self._api_base}" if self._api_base else "")
+        answer = call(lambda: self._attempt(request), patience, what, place)
         return self._reply(answer)
 
     def _check_pictures(self, messages: Sequence[Message]) -> None:
@@ -144,7 +145,7 @@ class LiteLLM:
         except litellm.ContentPolicyViolationError:
             return None
         except Exception as error:
-            fault = _fault(error)
+            fault = _fault(error, litellm)
         if fault is not None:
             raise fault
         _check_answered(response)
@@ -208,9 +209,11 @@ def _sendable(message: Message) -> dict[str, Any]:
     return {**message, "content": "(no answer)"} if empty else dict(message)
 
 
-def _fault(error: Exception) -> TransportError:
+def _fault(error: Exception, litellm: Any) -> TransportError:
     """An error of litellm as a fault, in one line, without secrets."""
-    status = getattr(error, "status_code", None)
+    # Where no server answered, the status is an invention of litellm.
+    invented = isinstance(error, litellm.APIConnectionError) or "Connection error" in str(error)
+    status = None if invented else getattr(error, "status_code", None)
     headers = getattr(error, "litellm_response_headers", None)
     # litellm puts its own classes in front and, for some, a traceback behind.
     said = _WRAPPING.sub("", str(error)).partition("Traceback (most recent call last)")[0]

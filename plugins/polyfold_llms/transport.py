@@ -27,7 +27,8 @@ from __future__ import annotations
 import random
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from email.utils import parsedate_to_datetime
@@ -141,12 +142,18 @@ def call(
             raise LLMError(f"{what} refused the request: {fault.text}; change the prompt, its parameters or the model")
         if len(faults) >= patience.tries:
             raise LLMError(
-                f"{what} gave no answer in {len(faults)} tries: {'; '.join(faults)}; try again later, or choose "
-                "another model"
+                f"{what} gave no answer in {len(faults)} tries: {_in_short(faults)}; check the server and the network, "
+                "try again later, or choose another model"
             )
         pause = patience.wait(len(faults), fault)
         faults[-1] += f" (waited {pause:.2g} s)"
         sleep(pause)
+
+
+def _in_short(faults: Sequence[str]) -> str:
+    """Each kind of fault once, with how often it happened."""
+    counts = Counter(fault.partition(" (waited")[0] for fault in faults)
+    return "; ".join(f"{fault} ({count} times)" if count > 1 else fault for fault, count in counts.items())
 
 
 def _remedy(fault: TransportError) -> str:
