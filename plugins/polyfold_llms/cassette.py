@@ -1,7 +1,8 @@
 """Cassettes: recorded requests and replies, one pair a line of JSON. Nothing in one is ever executed.
 
 Each line holds ``key``, ``request`` (with pictures as SHA-256 and length), ``place`` in its episode, ``reply`` and the
-day it was ``recorded``. Lines are only ever appended, under a lock; a line that a kill cut in half is dropped.
+day it was ``recorded``; or only ``key`` and ``place``, where another episode asked the same. Lines are only ever
+appended, under a lock; a line that a kill cut in half is dropped.
 """
 
 from __future__ import annotations
@@ -59,16 +60,27 @@ class Cassette:
             if size == self._read:
                 return
             for line, end in read_lines(self.path, self._read):
-                self._keep(_checked(line, f"{self.path}, line {self._lines + 1}"))
+                self._keep(self._checked(line, f"{self.path}, line {self._lines + 1}"))
                 self._lines, self._read = self._lines + 1, end
 
     def _keep(self, entry: dict[str, Any]) -> None:
-        if entry["key"] in self._entries:
-            return
-        self._entries[entry["key"]] = entry
-        nearby = nearby_key_of(entry["request"], entry["place"])
-        if nearby is not None:
-            self._nearby.setdefault(nearby, []).append(entry["key"])
+        known = self._entries.setdefault(entry["key"], entry)
+        nearby = nearby_key_of(known["request"], entry["place"])
+        if nearby is not None and entry["key"] not in self._nearby.setdefault(nearby, []):
+            self._nearby[nearby].append(entry["key"])
+
+    def _checked(self, line: bytes, where: str) -> dict[str, Any]:
+        """The entry of a line. Raises ConfigError if it is none, or if it was changed since."""
+        try:
+            entry = json.loads(line, parse_constant=_no_constants)
+            sound = isinstance(entry["place"], dict) and (_is_recording(entry) or entry["key"] in self._entries)
+        except (ValueError, KeyError, TypeError, RecursionError) as error:
+            raise ConfigError(
+                f"{where} is no recording ({error!r}); remove the line or use another cassette"
+            ) from error
+        if not sound:
+            raise ConfigError(f"{where} names a recording that does not stand above it; remove the line")
+        return entry
 
     def entries(self) -> list[dict[str, Any]]:
         """Everything recorded, in order."""
@@ -94,6 +106,12 @@ class Cassette:
             return f"{self.path} holds no recording"
         entry = max(self._entries.values(), key=lambda known: _likeness(known, request, place))
         return f"the nearest recording differs: {difference(entry['request'], request)}"
+
+    def add_place(self, request: Mapping[str, Any], place: Mapping[str, Any]) -> None:
+        """Note that a recorded request was asked at another place too, if that is not known yet."""
+        key, nearby = key_of(request), nearby_key_of(request, place)
+        if nearby is not None and key not in self._nearby.get(nearby, []):
+            append_line(self.path, {"key": key, "place": dict(place)})
 
     def add(self, request: Mapping[str, Any], place: Mapping[str, Any], reply: Reply) -> None:
         """Append a pair; it is on disk when this returns. Raises LLMError if it is too long or holds a secret."""
@@ -123,24 +141,14 @@ def _reply(entry: Mapping[str, Any], origin: str) -> Reply:
     return replace(Reply(**entry["reply"]), origin=origin)
 
 
-def _checked(line: bytes, where: str) -> dict[str, Any]:
-    try:
-        entry = json.loads(line, parse_constant=_no_constants)
-        request, reply, place = entry["request"], entry["reply"], entry["place"]
-        sound = (
-            request["v"] == VERSION
-            and isinstance(place, dict)
-            and isinstance(reply["text"], str)
-            and set(reply) <= _REPLY
-            and key_of(request) == entry["key"]
-        )
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise ConfigError(f"{where} is no recording ({error!r}); remove the line or use another cassette") from error
-    if not sound:
-        raise ConfigError(
-            f"{where} does not fit its key, or was made by another version of PolyFold; remove the line or record again"
-        )
-    return entry
+def _is_recording(entry: Mapping[str, Any]) -> bool:
+    if entry.keys() == {"key", "place"}:
+        return False
+    request, reply = entry["request"], entry["reply"]
+    sound = request["v"] == VERSION and isinstance(reply["text"], str) and reply.keys() <= _REPLY
+    if not sound or key_of(request) != entry["key"]:
+        raise ValueError("it was changed, or made by another version of PolyFold")
+    return True
 
 
 def _no_constants(name: str) -> float:

@@ -50,6 +50,7 @@ class RecordLLM:
         request = request_of(self.model, messages, params, self._sample)
         known = self._cassette.find(request)
         if known is not None:
+            self._cassette.add_place(request, request_place())
             return known
         check_no_secret(request)
         reply = self._inner.complete(messages, params)

@@ -137,6 +137,20 @@ def test_coordinates_may_differ_a_little_at_the_same_place_and_nothing_else_may(
             ask(replay, asked)
 
 
+def test_an_episode_that_asked_the_same_as_another_has_its_place_on_the_cassette_too(cassette):
+    def ask(llm, text, seed):
+        return Transcript(llm, {**PLACE, "seed": seed}).ask("fold_line", [{"role": "user", "content": text}])
+
+    record = create("llms", f"record:{cassette}")
+    for seed in (1, 2, 2):
+        ask(record, "x: 100", seed)
+    assert len(lines_of(cassette)) == 2
+    replay = create("llms", f"replay:{cassette}")
+    assert [ask(replay, "x: 101", seed).origin for seed in (1, 2)] == ["recorded nearby"] * 2
+    with pytest.raises(LLMError):
+        ask(replay, "x: 101", 3)
+
+
 def test_a_number_in_the_prompt_is_no_coordinate(cassette):
     def ask(llm, system):
         return Transcript(llm, PLACE).ask(
