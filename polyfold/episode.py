@@ -80,7 +80,7 @@ class Failure:
     """Why an episode ended early.
 
     Attributes:
-        stage: ``refused``, ``grounding``, ``planning``, ``infrastructure`` (no answer from the language model) or
+        stage: ``refused``, ``grounding``, ``planning``, ``unanswered`` (nothing came from the language model) or
             ``execution``.
         reason: the error's message.
     """
@@ -318,7 +318,7 @@ def _failure(error: PolyfoldError | None) -> Failure | None:
         RefusedError: "refused",
         PlanError: "planning",
         GroundingError: "grounding",
-        LLMError: "infrastructure",
+        LLMError: "unanswered",
     }
     stage = next((name for kind, name in stages.items() if isinstance(error, kind)), "execution")
     return Failure(stage, str(error))

@@ -59,7 +59,7 @@ def evaluate(
         raise ConfigError(f"there are no pictures {pictures!r}; choose one of {', '.join(PICTURES)}")
     run = RunDirectory(out, {"study": study.model_dump(mode="json")})
     wanted = list(cells(study))
-    done = {key: record for key, record in run.episodes().items() if record["cause"] != "infrastructure"}
+    done = {key: record for key, record in run.episodes().items() if not _unanswered(record)}
     missing = [cell for cell in wanted if cell.key not in done]
     if missing and (workers > 1 or engine == "dask"):
         _check_portable()
@@ -70,6 +70,11 @@ def evaluate(
             run.append(cell.key, _with_picture(run.path, cell, record, picture))
     done = run.episodes()
     return [done[cell.key] for cell in wanted]
+
+
+def _unanswered(record: Record) -> bool:
+    """Whether the episode ended because its language model gave no answer, which may go better another time."""
+    return record["failure"] is not None and record["failure"]["stage"] == "unanswered"
 
 
 def _with_picture(folder: Path, cell: Cell, record: Record, picture: bytes | None) -> Record:

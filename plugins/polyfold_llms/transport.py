@@ -5,7 +5,7 @@ what comes back                                 what is done
 ==============================================  ===============================================================
 408, 409, 425, 429, 5xx                         tried again, at most 4 tries; then LLMError
 429 or 402 for want of credit                   never again; LLMAccessError, which ends a run
-400, 413, 422 and other 4xx                     never again; LLMError, the episode ends as ``infrastructure``
+400, 413, 422 and other 4xx                     never again; LLMError, the episode ends as ``unanswered``
 401, 402, 403, 404                              never again; LLMAccessError, which ends a run
 no answer in time, connection dropped,          tried again, as a 5xx
 body cut short

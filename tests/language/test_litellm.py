@@ -263,7 +263,7 @@ def test_faults_lose_no_finished_episode_and_are_tried_again(server, tmp_path):
     server.script = lambda request: healthy(request) if len(server.received) <= 2 else error(500)
     first, second = run(study, tmp_path / "run", progress=False).records
     assert first["failure"] is None
-    assert (second["failure"]["stage"], second["cause"]) == ("infrastructure", "infrastructure")
+    assert (second["failure"]["stage"], second["cause"]) == ("unanswered", "infrastructure")
     server.script = lambda request: error(401)
     with pytest.raises(LLMAccessError):
         run(study, tmp_path / "run", progress=False)
