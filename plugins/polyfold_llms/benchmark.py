@@ -44,7 +44,8 @@ def overhead(route: str, calls: int, latency_s: float, limit: int) -> dict[str, 
         limit: calls allowed at once.
 
     Returns:
-        Wall time [s], overhead a call [ms] amortised over the calls, and the most calls that the server saw at once.
+        Wall time [s], overhead a call [ms] amortised over the calls, processor time a call, and the most calls that the
+        server saw at once.
     """
     template = plugins.create("garments", "tshirt").template().to_text()
     messages = load_prompt("subgoals").render(template=template, instruction="fold it into a rectangular block")
@@ -55,9 +56,9 @@ def overhead(route: str, calls: int, latency_s: float, limit: int) -> dict[str, 
         llm.complete(messages, {})
         list(pool.map(time.sleep, [0.01] * calls))
         server.most_at_once = 0
-        clock = time.perf_counter()
+        clock, spent = time.perf_counter(), time.process_time()
         replies = list(pool.map(lambda _: llm.complete(messages, {}), range(calls)))
-        wall = time.perf_counter() - clock
+        wall, spent = time.perf_counter() - clock, time.process_time() - spent
     ideal = math.ceil(calls / limit) * latency_s
     return {
         "route": route,
@@ -67,6 +68,7 @@ def overhead(route: str, calls: int, latency_s: float, limit: int) -> dict[str, 
         "wall [s]": round(wall, 2),
         "latency alone [s]": round(ideal, 2),
         "overhead a call [ms]": round(1000 * (wall - ideal) / calls, 1),
+        "CPU a call, server included [ms]": round(1000 * spent / calls, 1),
         "median latency seen [ms]": round(1000 * statistics.median(reply.latency_s for reply in replies)),
     }
 
