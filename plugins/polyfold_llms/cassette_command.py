@@ -55,7 +55,20 @@ def _configure(parser: argparse.ArgumentParser) -> None:
     source = fill.add_mutually_exclusive_group(required=True)
     source.add_argument("--answers", type=Path, help="answers, in any of the forms")
     source.add_argument("--llm", metavar="NAME[:ARG]", help="backend to ask")
+    fill.add_argument(
+        "--set", metavar="PARAM=VALUE", action="append", default=[], help="a parameter of that backend; may be repeated"
+    )
     fill.add_argument("--workers", type=int, default=8, metavar="N", help="calls at once, with --llm (default: 8)")
+
+
+def _setting(text: str) -> tuple[str, Any]:
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise ConfigError(f"--set {text!r} does not read PARAM=VALUE; for example --set timeout_s=60")
+    try:
+        return name, json.loads(value)
+    except ValueError:
+        return name, value
 
 
 def _show(arguments: argparse.Namespace) -> int:
@@ -144,7 +157,7 @@ def _asked(requests: Mapping[str, Missing], arguments: argparse.Namespace) -> It
 
     from polyfold.plugins import create
 
-    llm = create("llms", arguments.llm)
+    llm = create("llms", arguments.llm, dict(_setting(text) for text in arguments.set))
     asked = str(getattr(llm, "model", arguments.llm))
     others = {m.request["model"] for m in requests.values()} - {asked}
     if others:

@@ -331,6 +331,8 @@ def test_missing_requests_can_be_asked_of_a_backend(cassette, tmp_path):
     with pytest.raises(LLMError):
         plan(replay)
     assert len(lines_of(requests)) == 2
+    status, out = cli("cassette", "fill", cassette, requests, "--llm", "rules", "--set", "speed=2")
+    assert (status, "the llm 'rules' has no parameters" in out) == (1, True), out
 
 
 def test_failed_and_foreign_answers_are_counted_and_not_recorded(cassette, tmp_path):
