@@ -74,6 +74,7 @@ def attribute_open(episode: Episode, mask: NDArray[np.bool_]) -> str:
 def _of_failure(stage: str) -> str:
     causes = {
         "infrastructure": "infrastructure",
+        "unanswered": "infrastructure",
         "refused": "subgoal",
         "grounding": "grounding",
         "planning": "fold line",

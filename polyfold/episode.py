@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from polyfold import plugins
 from polyfold.config import Experiment
-from polyfold.errors import ConfigError, GroundingError, PlanError, PolyfoldError, RefusedError, SimulationError
+from polyfold.errors import (
+    ConfigError,
+    GroundingError,
+    LLMAccessError,
+    LLMError,
+    PlanError,
+    PolyfoldError,
+    RefusedError,
+    SimulationError,
+)
 from polyfold.garments import Garment
 from polyfold.guidance import guidance_for
 from polyfold.interfaces import Agent, Goal, Simulator
@@ -68,7 +77,13 @@ class Step:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why an episode ended early: the stage (``refused``, ``grounding``, ``planning``, ``execution``), the reason."""
+    """Why an episode ended early.
+
+    Attributes:
+        stage: ``refused``, ``grounding``, ``planning``, ``unanswered`` (nothing came from the language model) or
+            ``execution``.
+        reason: the error's message.
+    """
 
     stage: str
     reason: str
@@ -153,8 +168,9 @@ def run_episode(
 ) -> Episode:
     """Run one episode from a sentence to the final picture.
 
-    A refusal, a failed grounding, an unusable plan or a diverged fold ends the episode with ``failure`` set; what was
-    done until then is kept. Other errors (a bug, a missing plugin) are raised.
+    A refusal, a failed grounding, an unusable plan, a language model that can't be reached or a diverged fold ends the
+    episode with ``failure`` set; what was done until then is kept. Other errors (a bug, a missing plugin, a key that is
+    not accepted) are raised.
 
     Args:
         experiment: the components.
@@ -170,7 +186,10 @@ def run_episode(
     """
     template = plugins.create("garments", garment.kind).template()
     agent = agent or build_agent(experiment)
-    transcript = Transcript(experiment.create("llms", "llm") if "instruction" in agent.requires else None)
+    transcript = Transcript(
+        experiment.create("llms", "llm") if "instruction" in agent.requires else None,
+        {"task": task.id if task else None, "garment": garment.name, "seed": seed, "instruction": instruction},
+    )
     own_simulator = simulator is None
     simulator = simulator or experiment.create("simulators", "simulator")
     seconds: dict[str, float] = {}
@@ -205,7 +224,9 @@ def run_episode(
                 step, observation = _execute(simulator, decision, observation, len(steps))
                 steps.append(step)
                 plugins.notify("on_step", step=step)
-        except (PlanError, GroundingError, SimulationError) as caught:
+        except LLMAccessError:
+            raise
+        except (PlanError, GroundingError, SimulationError, LLMError) as caught:
             error = caught
         for step in steps:
             for stage, spent in step.seconds.items():
@@ -293,6 +314,11 @@ def _execute(simulator: Simulator, decision: Decision, seen: Observation, index:
 def _failure(error: PolyfoldError | None) -> Failure | None:
     if error is None:
         return None
-    stages = {RefusedError: "refused", PlanError: "planning", GroundingError: "grounding"}
+    stages = {
+        RefusedError: "refused",
+        PlanError: "planning",
+        GroundingError: "grounding",
+        LLMError: "unanswered",
+    }
     stage = next((name for kind, name in stages.items() if isinstance(error, kind)), "execution")
     return Failure(stage, str(error))

@@ -7,6 +7,7 @@ __all__ = [
     "ConfigError",
     "GarmentError",
     "GroundingError",
+    "LLMAccessError",
     "LLMError",
     "PlanError",
     "PluginError",
@@ -46,6 +47,10 @@ class RefusedError(PlanError):
 
 class LLMError(PolyfoldError):
     """A language-model backend failed: transport, credentials, or an unusable reply."""
+
+
+class LLMAccessError(LLMError):
+    """No call can succeed until a person acts: the key, the credit, the address or the model's name. It ends a run."""
 
 
 class ActionError(PolyfoldError):

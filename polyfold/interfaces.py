@@ -36,7 +36,11 @@ __all__ = [
 ]
 
 Message = Mapping[str, Any]
-"""A chat message: ``{"role": "system" | "user" | "assistant", "content": str}``."""
+"""A chat message: ``{"role": "system" | "user" | "assistant", "content": str}``.
+
+With pictures the content is a list of parts: ``{"type": "text", "text": str}`` and ``{"type": "image_url", "image_url":
+{"url": "data:image/png;base64,..."}}``.
+"""
 
 
 @runtime_checkable
@@ -111,9 +115,13 @@ class Reply:
         refusal: the reason, when the model refuses; final.
         usage: token counts by name; empty when unknown.
         cost: US dollars; None when unknown, never 0 for unknown.
+        cost_source: where the cost comes from: ``provider``, the price table and its date, ``free``; empty: unknown.
         latency_s: duration of the successful call [s].
         attempts: transport tries it took.
         model_served: what answered.
+        wall_s: time until the answer was there, failed tries and waits included [s].
+        faults: what went wrong in the tries before, and how long was waited, one line each.
+        origin: ``live``; ``recorded`` from a cassette; ``recorded nearby`` for a request that differs in numbers only.
     """
 
     text: str
@@ -125,6 +133,10 @@ class Reply:
     latency_s: float = 0.0
     attempts: int = 1
     model_served: str = ""
+    cost_source: str = ""
+    wall_s: float = 0.0
+    faults: Sequence[str] = ()
+    origin: str = "live"
 
 
 @runtime_checkable

@@ -1,7 +1,8 @@
 """Runs a study: in this process, in several, or on a Dask cluster; resumable, with progress.
 
 A finished episode is on disk before the next is waited for, so killing a run at any moment loses at most what was in
-flight, and running it again does only what is missing.
+flight, and running it again does only what is missing, and again what failed for lack of an answer by the language
+model.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ def evaluate(
         raise ConfigError(f"there are no pictures {pictures!r}; choose one of {', '.join(PICTURES)}")
     run = RunDirectory(out, {"study": study.model_dump(mode="json")})
     wanted = list(cells(study))
-    done = run.episodes()
+    done = {key: record for key, record in run.episodes().items() if not _unanswered(record)}
     missing = [cell for cell in wanted if cell.key not in done]
     if missing and (workers > 1 or engine == "dask"):
         _check_portable()
@@ -69,6 +70,11 @@ def evaluate(
             run.append(cell.key, _with_picture(run.path, cell, record, picture))
     done = run.episodes()
     return [done[cell.key] for cell in wanted]
+
+
+def _unanswered(record: Record) -> bool:
+    """Whether the episode ended because its language model gave no answer, which may go better another time."""
+    return record["failure"] is not None and record["failure"]["stage"] == "unanswered"
 
 
 def _with_picture(folder: Path, cell: Cell, record: Record, picture: bytes | None) -> Record:

@@ -97,11 +97,15 @@ class RunDirectory:
 
 
 def read_episodes(path: str | Path) -> list[dict[str, Any]]:
-    """The finished episodes of a run directory, which may be running still: a half-written last line is left out."""
+    """The finished episodes of a run directory, the last try of each.
+
+    The directory may be running still: a half-written last line is left out.
+    """
     episodes = Path(path) / "episodes.jsonl"
     if not episodes.exists():
         return []
-    return [json.loads(line) for line in episodes.read_text("utf-8").split("\n")[:-1]]
+    records = [json.loads(line) for line in episodes.read_text("utf-8").split("\n")[:-1]]
+    return list({record["key"]: record for record in records}.values())
 
 
 def _difference(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:

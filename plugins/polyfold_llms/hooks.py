@@ -1,4 +1,4 @@
-"""Registers the language-model backends."""
+"""Registers the language-model backends and the verb for cassettes."""
 
 from polyfold.hookspecs import hookimpl
 
@@ -7,3 +7,16 @@ from polyfold.hookspecs import hookimpl
 def register_llms(register):
     """Register the backends."""
     register("rules", "polyfold_llms.rules:RulesLLM", "deterministic solver of fold language; no key, no network")
+    register("litellm", "polyfold_llms.litellm_backend:LiteLLM", "litellm:ROUTE/MODEL, any provider or local server")
+    register("record", "polyfold_llms.recording:RecordLLM", "record:CASSETTE, another backend, recorded")
+    register("replay", "polyfold_llms.recording:ReplayLLM", "replay:CASSETTE, what was recorded; no key, no network")
+
+
+@hookimpl
+def register_commands(register):
+    """Register the verb."""
+    register(
+        "cassette",
+        "polyfold_llms.cassette_command:Cassettes",
+        "look into recorded language models and fill what is missing",
+    )

@@ -33,7 +33,7 @@ class RulesLLM:
                 text = {"subgoals": _subgoals, "fold_line": _fold_line}[question.role](question)
             except NotUnderstoodError as reason:
                 text = _refusal(str(reason))
-        return Reply(text, cost=0.0, model_served=MODEL)
+        return Reply(text, cost=0.0, cost_source="free", model_served=MODEL)
 
 
 def _garment(question: Question) -> Garment:

@@ -20,6 +20,7 @@ VERBS = {
     "evaluate": ("polyfold.cli.evaluate", "run a study: variants over tasks and garments"),
     "table": ("polyfold.cli.table", "tabulate an evaluation"),
     "report": ("polyfold.cli.report", "write an evaluation as one HTML page"),
+    "prompt": ("polyfold.cli.prompt", "show what a language model is told"),
     "plugins": ("polyfold.cli.plugins", "list the installed plugins and their components"),
 }
 

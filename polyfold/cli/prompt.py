@@ -1,0 +1,100 @@
+"""``polyfold prompt``: what a language model is told, rendered for a garment and a step of an episode."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from polyfold.cli.components import add_component_options, experiment_from
+from polyfold.cli.source import add_source_options, garment_from
+
+__all__ = ["configure", "run"]
+
+CHARACTERS_PER_TOKEN = 3.4
+"""The prompts in ``prompts/`` have 3.2 (fold_line) to 3.7 (subgoals) by the tokenizer of gpt-4o, on t-shirts."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the actions and their options."""
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    actions.add_parser("list", help="the prompts that are installed")
+    show = actions.add_parser("show", help="one prompt as the model gets it, with its number of tokens")
+    show.add_argument("role", help="for example subgoals or fold_line")
+    show.add_argument("--instruction", default="fold it in half", help="default: fold it in half")
+    show.add_argument("--step", type=int, default=0, metavar="N", help="after N folds, for what is asked per fold")
+    show.add_argument("--model", metavar="ROUTE/MODEL", help="count tokens by this model's tokenizer (needs litellm)")
+    show.add_argument("--json", action="store_true", help="print one JSON object")
+    add_source_options(show)
+    add_component_options(show)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """List the prompts, or fold as far as needed and show what was asked."""
+    if arguments.action == "list":
+        from polyfold.prompts import prompt_names
+
+        print("\n".join(prompt_names()))
+        return 0
+    entry = _asked(arguments)
+    tokens, how = _tokens(entry["messages"], arguments.model)
+    if arguments.json:
+        shown = {name: entry[name] for name in ("role", "step", "params", "messages")}
+        print(json.dumps({**shown, "tokens": tokens, "counted": how}, ensure_ascii=False))
+        return 0
+    for message in entry["messages"]:
+        print(f"--- {message['role']}\n{_text(message)}\n")
+    print(f"--- {tokens} tokens ({how}), parameters {json.dumps(entry['params'])}")
+    return 0
+
+
+def _asked(arguments: argparse.Namespace) -> Mapping[str, Any]:
+    """The request in a role and at a step of an episode. Raises ConfigError if nothing of the kind was asked."""
+    from polyfold.episode import run_episode
+    from polyfold.errors import ConfigError
+
+    experiment = experiment_from(arguments)
+    garment = garment_from(arguments, experiment)
+    episode = run_episode(experiment, garment, arguments.instruction, arguments.seed)
+    entries = episode.transcript.entries
+    wanted = [entry for entry in entries if entry["role"] == arguments.role]
+    if not wanted:
+        roles = ", ".join(dict.fromkeys(entry["role"] for entry in entries)) or "none"
+        raise ConfigError(_with_failure(f"nothing was asked in the role {arguments.role!r}, but in {roles}", episode))
+    found = [entry for entry in wanted if entry["step"] in (None, arguments.step)]
+    if not found:
+        steps = ", ".join(str(step) for step in dict.fromkeys(entry["step"] for entry in wanted))
+        raise ConfigError(
+            _with_failure(f"{arguments.role!r} was not asked at step {arguments.step}, but at {steps}", episode)
+        )
+    return found[0]
+
+
+def _with_failure(problem: str, episode: Any) -> str:
+    ended = f"; the episode ended early ({episode.failure.reason})" if episode.failure else ""
+    return f"{problem}{ended}; choose among them, or give another --instruction, --planner or --step"
+
+
+def _tokens(messages: Sequence[Mapping[str, Any]], model: str | None) -> tuple[int, str]:
+    """The number of tokens and how it was counted; a picture is not counted."""
+    if model is None:
+        characters = sum(len(_text(message)) for message in messages)
+        return math.ceil(characters / CHARACTERS_PER_TOKEN), f"estimated at {CHARACTERS_PER_TOKEN:g} characters each"
+    from polyfold import plugins
+
+    counter = plugins.component_class("llms", "litellm")
+    texts = [{"role": message["role"], "content": _text(message)} for message in messages]
+    return counter.count_tokens(model, texts), f"by the tokenizer of {model}"
+
+
+def _text(message: Mapping[str, Any]) -> str:
+    content = message["content"]
+    if isinstance(content, str):
+        return content
+    return "\n".join(part["text"] if part["type"] == "text" else _picture(part) for part in content)
+
+
+def _picture(part: Mapping[str, Any]) -> str:
+    return f"[picture of {part['bytes']} bytes, SHA-256 {part['sha256'][:12]}]"
