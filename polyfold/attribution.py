@@ -37,7 +37,7 @@ def attribute(episode: Episode, lines: Sequence[FoldLine], reference: Reference)
         reference: the oracle's states.
     """
     if episode.failure is not None:
-        return _of_failure(episode.failure.stage)
+        return _of_failure(episode.failure.stage, bool(episode.subgoals))
     pixels = np.array(list(episode.initial_state.keypoint_pixels().values()))
     span = float(np.ptp(pixels, axis=0).max())
     settled = episode.settled()
@@ -60,7 +60,7 @@ def attribute_open(episode: Episode, mask: NDArray[np.bool_]) -> str:
         mask: the cloth in the last picture, bool, shape (H, W).
     """
     if episode.failure is not None:
-        return _of_failure(episode.failure.stage)
+        return _of_failure(episode.failure.stage, bool(episode.subgoals))
     settled = episode.settled()
     lines = [step.fold_line for step in settled if step.fold_line is not None]
     if len(lines) != len(settled):
@@ -71,13 +71,14 @@ def attribute_open(episode: Episode, mask: NDArray[np.bool_]) -> str:
     return "subgoal" if found.iou >= AS_PLANNED else "execution"
 
 
-def _of_failure(stage: str) -> str:
+def _of_failure(stage: str, decomposed: bool) -> str:
+    """The cause of an episode that ended early; a plan that failed before there were subgoals failed at them."""
     causes = {
         "infrastructure": "infrastructure",
         "unanswered": "infrastructure",
         "refused": "subgoal",
         "grounding": "grounding",
-        "planning": "fold line",
+        "planning": "fold line" if decomposed else "subgoal",
     }
     return causes.get(stage, "execution")
 

@@ -167,6 +167,7 @@ def _record(cell: Cell, entry: Task | OpenTask, episode: Episode, comparison: _C
         "failure": None if episode.failure is None else vars(episode.failure),
         "cause": None if success["polyfold"] else _cause(episode, entry, comparison.nearest),
         "privileged": episode.privileged,
+        "language": episode.transcript.accounts(),
         "seconds": {stage: round(spent, 4) for stage, spent in episode.seconds.items()},
         "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
     }

@@ -22,7 +22,7 @@ from polyfold.store import read_episodes
 
 __all__ = ["main"]
 
-TIMES = ("seconds", "peak_memory_mb", "picture")
+TIMES = ("seconds", "language", "peak_memory_mb", "picture")
 """What may differ between runs: times, memory, and where a picture lies."""
 
 Record = dict[str, Any]

@@ -18,7 +18,7 @@ from polyfold.runner import evaluate
 from polyfold.study import cells, experiment_of
 
 SMALL = {"name": "small", "tasks": ("square-corner-*",), "garments": 2, "first_seed": 2000, "edge_length": 0.03}
-TIMES = ("seconds", "peak_memory_mb")
+TIMES = ("seconds", "language", "peak_memory_mb")
 
 
 @pytest.fixture(autouse=True)
