@@ -20,6 +20,7 @@ __all__ = [
     "FoldRegion",
     "PickConfig",
     "best_pair",
+    "coupled_pick",
     "fold_region",
     "nearest_point",
     "quadrilateral_area",
@@ -35,6 +36,9 @@ LEAST_DEPTH_PX = 4.0
 
 SIDE_SHARE = 0.3
 """Pieces left of the line that reach less than this share as far from it as the largest one aren't picked at."""
+
+PARTNER_SLIDE = 0.1
+"""How far a second pick moves towards the first along the contour, as a share of their distance; not in the paper."""
 
 GAP_PX = 4.0
 """Neighbours on the contour lie closer than this; a longer step leads over the fold line to another piece."""
@@ -211,6 +215,11 @@ def second_pick(region: FoldRegion, first: ArrayLike, gamma: float) -> Floats:
     points, distances = _hull_corners(region)
     areas = quadrilateral_area(region.fold_line.start, region.fold_line.end, first, points)
     return points[_first_best(areas / region.box_area + gamma * distances / np.sqrt(region.box_area))]
+
+
+def coupled_pick(region: FoldRegion, first: ArrayLike, config: PickConfig, share: float = PARTNER_SLIDE) -> Floats:
+    """The :func:`second_pick` of a first pick, moved a little towards it along the contour (see :func:`slide`)."""
+    return slide(region, second_pick(region, first, config.gamma), first, share)
 
 
 def _hull_corners(region: FoldRegion) -> tuple[Floats, Floats]:
