@@ -17,11 +17,13 @@ from polyfold.geometry import span_on_mask
 from polyfold.types import Action, FoldLine, Scene
 
 __all__ = [
+    "PARTNER_SLIDE",
     "FoldRegion",
     "PickConfig",
     "best_pair",
     "coupled_pick",
     "fold_region",
+    "lifted_vertices",
     "nearest_point",
     "quadrilateral_area",
     "second_pick",
@@ -33,6 +35,9 @@ Floats = NDArray[np.float64]
 
 LEAST_DEPTH_PX = 4.0
 """A part that reaches less far from the line than this can't be grasped without grasping what should stay."""
+
+NEAR_CONTOUR_PX = 25.0
+"""A vertex farther than this from the contour lies on top of the cloth, not at its edge."""
 
 SIDE_SHARE = 0.3
 """Pieces left of the line that reach less than this share as far from it as the largest one aren't picked at."""
@@ -313,3 +318,22 @@ def _pull_back(picks: Floats, places: Floats, width: int, height: int) -> Floats
 def nearest_point(points: Floats, to: ArrayLike) -> Floats:
     """The one among points, shape (N, 2), that is nearest to a point of shape (2,)."""
     return points[np.argmin(((points - np.asarray(to, float)) ** 2).sum(1))]
+
+
+def lifted_vertices(region: FoldRegion, scene: Scene) -> Floats:
+    """Visible vertices left of the line and near the lifted contour [px], shape (N, 2), in the model's order.
+
+    Raises PlanError when the scene has no polygon model, or no such vertex.
+    """
+    if scene.model is None:
+        raise PlanError("this policy picks at polygon vertices, and the scene has no polygon; ground with polygon")
+    visible = [state.point for state in scene.model.vertices().values() if state.visible]
+    points = np.array(visible, float).reshape(-1, 2)
+    lifted = [
+        point
+        for point in points[region.fold_line.lifts(points)]
+        if np.hypot(*(nearest_point(region.points, point) - point)) <= NEAR_CONTOUR_PX
+    ]
+    if not lifted:
+        raise PlanError("no visible polygon vertex lies on the contour left of the fold line; use the policy caso")
+    return np.array(lifted)

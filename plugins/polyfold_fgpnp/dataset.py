@@ -10,7 +10,7 @@ A shard ``shards/00042.npz`` (no pickle) holds what one job found. Per state, sh
 Per trial, shape (T, ...):
 
 * ``trial_state``: index of its state within the shard; ``recipe``: index into :data:`polyfold_fgpnp.trials.RECIPES`;
-* ``first``, ``second``: contour points [px]; ``picks``: where the arms picked [px], shape (2, 2), NaN for no second arm;
+* ``first``, ``second``: contour points [px]; ``picks``: where the arms picked [px], (2, 2), NaN for no second arm;
 * ``chamfer_px``, ``iou``, ``flap_mm``, ``rest_mm``: the outcome (:class:`polyfold_fgpnp.outcomes.Outcome`);
 * ``diverged``: the simulation failed and there is no outcome; ``result``: the resulting mask, packed bits.
 """

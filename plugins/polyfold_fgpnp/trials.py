@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from polyfold.errors import ConfigError
 
-from .affordance import FoldRegion, PickConfig, best_pair, coupled_pick, slide
+from .affordance import FoldRegion, PickConfig, best_pair, coupled_pick, nearest_point, slide
 from .lines import outline_corners
 
 __all__ = ["COUPLED", "MIX", "RECIPES", "Trial", "draw_trials", "parse_mix"]
@@ -52,6 +52,11 @@ def _pair(region: FoldRegion, place: float, rng: np.random.Generator) -> tuple[F
     return region.points[int(place * len(region.points))], region.points[rng.integers(len(region.points))]
 
 
+def _vertex(region: FoldRegion, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    first = nearest_point(region.points, _corner(region, rng))
+    return first, coupled_pick(region, first, PickConfig())
+
+
 def _single(region: FoldRegion, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
     pick = region.points[int(place * len(region.points))]
     return pick, pick
@@ -63,10 +68,15 @@ RECIPES: Mapping[str, Callable[[FoldRegion, float, np.random.Generator], tuple[F
     "slid": _slid,
     "pair": _pair,
     "single": _single,
+    "vertex": _vertex,
 }
-"""``uniform``: the first pick anywhere on the lifted contour, its partner by affordance (the paper's). ``extreme``: the
-first pick at or a little inwards of a corner, its partner by affordance. ``slid``: the pair with the best affordance,
-each moved inwards by a random share. ``pair``: two random points. ``single``: one arm at a random point."""
+"""How two picks are drawn.
+
+``uniform``: the first anywhere on the lifted contour, its partner by affordance (the paper's). ``extreme``: the first
+at or a little inwards of a corner, its partner by affordance. ``slid``: the pair with the best affordance, each moved
+inwards by a random share. ``pair``: two random points. ``single``: one arm at a random point. ``vertex``: the first at
+a corner of the outline, where a polygon model has its vertices, its partner by affordance.
+"""
 
 COUPLED = ("uniform", "extreme")
 """Recipes whose second pick follows from the first, as the coupled spatial action map assumes."""
