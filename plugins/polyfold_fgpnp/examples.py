@@ -88,11 +88,14 @@ def make_examples(
     Raises:
         ConfigError: if the data sets hold no trials for this variant.
     """
-    parts = [_examples_of(one, variant, frame, reward, scale, folds) for one in data]
+    recipes = TRIALS_OF[variant]
+    useful = [one for one in data if len(one.of_recipes(*recipes))]
+    if not useful:
+        raise ConfigError(
+            f"no data for {variant}: it learns from the recipes {', '.join(recipes)}; collect some with --mix"
+        )
+    parts = [_examples_of(one, variant, frame, reward, scale, folds) for one in useful]
     most = max(part.valid.shape[1] for part in parts)
-    if not sum(part.valid.sum() for part in parts):
-        recipes = ", ".join(TRIALS_OF[variant])
-        raise ConfigError(f"no data for {variant}: it learns from the recipes {recipes}; collect some with --mix")
     padded = [_padded_to(part, most) for part in parts]
     names = vars(padded[0])
     joined = Examples(**{name: np.concatenate([getattr(part, name) for part in padded]) for name in names})
@@ -106,7 +109,7 @@ def _examples_of(data: Dataset, variant: str, frame: FrameName, reward: str, sca
     trials = trials[trials < (folds or data.folds)]
     states = data["trial_state"][trials]
     kept = np.unique(states)
-    most = int(np.bincount(states).max()) if len(states) else 1
+    most = int(np.bincount(states).max())
     labels = label(data.reward(reward), scale)
     rows = {name: [] for name in ("images", "lines", "points", "labels", "valid", "garments")}
     for state in tqdm(kept, unit="state", desc="views", disable=not sys.stderr.isatty()):

@@ -81,8 +81,8 @@ def train(config: TrainingConfig, out: str | Path, device: str = "auto", progres
         for epoch in range(first, config.epochs):
             loss = run.epoch(epoch)
             found = {"loss": loss, **run.validate(validation)}
-            run.save(out / "checkpoint.safetensors", epoch + 1)
             logs.write(epoch + 1, found)
+            run.save(out / "checkpoint.safetensors", epoch + 1)
             bar.set_postfix({name: f"{value:.3f}" for name, value in found.items()}, refresh=False)
             bar.update()
     provenance = Provenance(
