@@ -43,14 +43,14 @@ class Collect:
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Collect, or describe."""
-        from . import describe
+        from .describe import describe
         from .interaction import Interaction
         from .trials import MIX, parse_mix
 
         if (arguments.out is None) == (arguments.describe is None):
             raise ConfigError("say either where to collect (--out DIR) or what to show (--describe DIR)")
         if arguments.describe is not None:
-            print(describe.describe(arguments.describe))
+            print(describe(arguments.describe))
             return 0
         interaction = Interaction(
             kind=arguments.kind,

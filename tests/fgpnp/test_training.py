@@ -2,6 +2,7 @@
 
 import json
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -204,3 +205,8 @@ def test_policies_and_verbs_are_listed_without_torch():
     code = "import sys; from polyfold import plugins; plugins.component_class('policies', 'csam+caso').Config(); "
     code += "plugins.component_class('policies', 'pair'); assert 'torch' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, env=os.environ)
+
+
+@pytest.mark.parametrize("path", sorted((Path(__file__).parents[2] / "experiments/training").glob("*.toml")))
+def test_the_recorded_configurations_are_valid(path):
+    assert read_config(path).data
