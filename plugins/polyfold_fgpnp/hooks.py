@@ -22,3 +22,4 @@ def register_commands(register):
     """Register the verbs."""
     register("collect", "polyfold_fgpnp.collect:Collect", "fold at random in simulation and record how it came out")
     register("train", "polyfold_fgpnp.train:Train", "learn a value network from random folds")
+    register("maps", "polyfold_fgpnp.maps:Maps", "draw learned spatial action maps over garments")

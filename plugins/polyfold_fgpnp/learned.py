@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from .networks import ValueNetwork
 
-__all__ = ["CoupledActionMap", "OneActionMap", "PairValue", "TwoActionMaps", "VertexLearned"]
+__all__ = ["CoupledActionMap", "LearnedPolicy", "OneActionMap", "PairValue", "TwoActionMaps", "VertexLearned"]
 
 Floats = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ class LearnedConfig(PickConfig):
     weights: str = Field("", description="file of `polyfold train`; empty for those that come with the package")
 
 
-class _Learned(ABC):
+class LearnedPolicy(ABC):
     """Asks a value network and picks where it promises most."""
 
     variant: ClassVar[str]
@@ -108,7 +108,7 @@ class _Learned(ABC):
             return (both[:1] + (mirrored.flip(1) if self.variant == "2sam" else mirrored)) / 2, seen.frame
 
 
-class CoupledActionMap(_Learned):
+class CoupledActionMap(LearnedPolicy):
     """The contour point with the highest value in the coupled spatial action map; its partner by affordance.
 
     The partner moves a little towards the first pick, as in training (see :func:`coupled_pick`).
@@ -126,7 +126,7 @@ class CoupledActionMap(_Learned):
         return first, coupled_pick(region, first, self.config, self.config.slide)
 
 
-class VertexLearned(_Learned):
+class VertexLearned(LearnedPolicy):
     """The polygon vertex with the highest value; its partner by affordance. Needs a polygon model."""
 
     variant: ClassVar[str] = "vertex-learned"
@@ -138,7 +138,7 @@ class VertexLearned(_Learned):
         return first, coupled_pick(region, first, self.config)
 
 
-class OneActionMap(_Learned):
+class OneActionMap(LearnedPolicy):
     """One arm, at the contour point with the highest value."""
 
     variant: ClassVar[str] = "1sam"
@@ -148,7 +148,7 @@ class OneActionMap(_Learned):
         return pick, pick
 
 
-class TwoActionMaps(_Learned):
+class TwoActionMaps(LearnedPolicy):
     """Two arms, each at the highest value of a map of its own; neither knows of the other."""
 
     variant: ClassVar[str] = "2sam"
@@ -158,7 +158,7 @@ class TwoActionMaps(_Learned):
         return region.points[first], region.points[second]
 
 
-class PairValue(_Learned):
+class PairValue(LearnedPolicy):
     """Both picks at once: the pair of contour points with the highest joint value, the same twice for one arm.
 
     Not in the paper, whose map knows the second pick only through affordance.
