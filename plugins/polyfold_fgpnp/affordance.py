@@ -20,6 +20,7 @@ __all__ = [
     "PARTNER_SLIDE",
     "FoldRegion",
     "PickConfig",
+    "affordance",
     "best_pair",
     "coupled_pick",
     "fold_region",
@@ -197,16 +198,22 @@ def _cross(a: Floats, b: Floats) -> Floats:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
+def affordance(region: FoldRegion, first: ArrayLike, second: ArrayLike, gamma: float) -> Floats:
+    """The score S / S_max + gamma (l(first) + l(second)) / sqrt(S_max) of pairs of points [px] that broadcast."""
+    line = region.fold_line
+    areas = quadrilateral_area(line.start, line.end, first, second)
+    distances = line.distance(first) + line.distance(second)
+    return areas / region.box_area + gamma * distances / np.sqrt(region.box_area)
+
+
 def best_pair(region: FoldRegion, gamma: float) -> tuple[Floats, Floats]:
     """The two contour pixels with the highest affordance score, each of shape (2,); the same one twice is possible.
 
     The score is ``S(start, end, p, q) / S_max + gamma (l(p) + l(q)) / sqrt(S_max)``. It is convex in p and in q, so its
     maximum over all contour pixels is attained at corners of their convex hull: comparing these few is exact.
     """
-    points, distances = _hull_corners(region)
-    line = region.fold_line
-    areas = quadrilateral_area(line.start, line.end, points[:, None], points[None, :])
-    score = areas / region.box_area + gamma * (distances[:, None] + distances) / np.sqrt(region.box_area)
+    points = _hull_corners(region)
+    score = affordance(region, points[:, None], points[None, :], gamma)
     first, second = np.unravel_index(_first_best(score.ravel()), score.shape)
     return points[first], points[second]
 
@@ -217,9 +224,8 @@ def second_pick(region: FoldRegion, first: ArrayLike, gamma: float) -> Floats:
     It maximises ``S(start, end, first, p) / S_max + gamma l(p) / sqrt(S_max)`` over all contour pixels (paper,
     Sec. IV-D); as for :func:`best_pair`, corners of their convex hull are enough.
     """
-    points, distances = _hull_corners(region)
-    areas = quadrilateral_area(region.fold_line.start, region.fold_line.end, first, points)
-    return points[_first_best(areas / region.box_area + gamma * distances / np.sqrt(region.box_area))]
+    points = _hull_corners(region)
+    return points[_first_best(affordance(region, first, points, gamma))]
 
 
 def coupled_pick(region: FoldRegion, first: ArrayLike, config: PickConfig, share: float = PARTNER_SLIDE) -> Floats:
@@ -227,11 +233,10 @@ def coupled_pick(region: FoldRegion, first: ArrayLike, config: PickConfig, share
     return slide(region, second_pick(region, first, config.gamma), first, share)
 
 
-def _hull_corners(region: FoldRegion) -> tuple[Floats, Floats]:
+def _hull_corners(region: FoldRegion) -> Floats:
     import cv2
 
-    corners = np.sort(cv2.convexHull(region.points.astype(np.float32), returnPoints=False).ravel())
-    return region.points[corners], region.distances[corners]
+    return region.points[np.sort(cv2.convexHull(region.points.astype(np.float32), returnPoints=False).ravel())]
 
 
 def _first_best(scores: Floats) -> int:

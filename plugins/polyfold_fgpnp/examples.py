@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +14,7 @@ from polyfold.errors import ConfigError, PlanError
 from .affordance import fold_region
 from .dataset import Dataset
 from .frames import FrameName, view
+from .pairs import pair_geometry
 from .trials import COUPLED
 
 __all__ = ["TRIALS_OF", "Examples", "label", "make_examples"]
@@ -42,6 +43,7 @@ class Examples:
         lines: fold lines over the image's size, float32, shape (S, 4).
         points: both picks of each trial in pixels of the network's map, float32, shape (S, K, 2, 2); of two arms the
             first is the one nearer the fold line's start where ``ordered``.
+        geometry: what :func:`pair_geometry` says of each trial, float32, shape (S, K, GEOMETRY).
         labels: higher is better, float32, shape (S, K).
         valid: which trials are there, bool, shape (S, K).
         garments: garment seed of each state, shape (S,).
@@ -50,6 +52,7 @@ class Examples:
     images: NDArray[np.uint8]
     lines: Floats
     points: Floats
+    geometry: Floats
     labels: Floats
     valid: NDArray[np.bool_]
     garments: NDArray[np.int32]
@@ -111,7 +114,7 @@ def _examples_of(data: Dataset, variant: str, frame: FrameName, reward: str, sca
     kept = np.unique(states)
     most = int(np.bincount(states).max())
     labels = label(data.reward(reward), scale)
-    rows = {name: [] for name in ("images", "lines", "points", "labels", "valid", "garments")}
+    rows = {name: [] for name in ("images", "lines", "points", "geometry", "labels", "valid", "garments")}
     for state in tqdm(kept, unit="state", desc="views", disable=not sys.stderr.isatty()):
         mine = trials[states == state]
         try:
@@ -125,6 +128,7 @@ def _examples_of(data: Dataset, variant: str, frame: FrameName, reward: str, sca
         rows["images"].append(seen.image)
         rows["lines"].append(seen.line)
         rows["points"].append(_filled(seen.frame.apply(picks), most))
+        rows["geometry"].append(_filled(pair_geometry(region, picks[:, 0], picks[:, 1]), most))
         rows["labels"].append(_filled(labels[mine], most))
         rows["valid"].append(np.arange(most) < len(mine))
         rows["garments"].append(data["garment_seed"][state])
@@ -147,5 +151,5 @@ def _padded_to(part: Examples, most: int) -> Examples:
     def widened(values: NDArray) -> NDArray:
         return np.pad(values, [(0, 0), (0, most - values.shape[1])] + [(0, 0)] * (values.ndim - 2))
 
-    wide = {name: widened(getattr(part, name)) for name in ("points", "labels", "valid")}
-    return Examples(part.images, part.lines, wide["points"], wide["labels"], wide["valid"], part.garments)
+    wide = {name: widened(getattr(part, name)) for name in ("points", "geometry", "labels", "valid")}
+    return replace(part, **wide)

@@ -17,6 +17,7 @@ from .affordance import (
     PARTNER_SLIDE,
     FoldRegion,
     PickConfig,
+    affordance,
     coupled_pick,
     fold_region,
     lifted_vertices,
@@ -24,6 +25,7 @@ from .affordance import (
     to_action,
 )
 from .frames import Frame, view
+from .pairs import pair_geometry
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -161,10 +163,16 @@ class TwoActionMaps(LearnedPolicy):
 class PairValue(LearnedPolicy):
     """Both picks at once: the pair of contour points with the highest joint value, the same twice for one arm.
 
-    Not in the paper, whose map knows the second pick only through affordance.
+    Not in the paper, whose map knows the second pick only through affordance. Pairs of little affordance are left out:
+    of 244 states, the best of eight tried pairs had less than 0.65 of the best affordance in under 5 %.
     """
 
     variant: ClassVar[str] = "pair"
+
+    class Config(LearnedConfig):
+        """Parameters."""
+
+        least_affordance: float = Field(0.65, ge=0, le=1, description="pairs need this share of the best affordance")
 
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
         points = region.points[:: max(1, len(region.points) // CANDIDATES)]
@@ -186,8 +194,11 @@ class PairValue(LearnedPolicy):
         at = _points(frame, points)
         first, second = np.triu_indices(len(points))
         pairs = torch.stack([at[first], at[second]], 1)[None]
+        geometry = torch.from_numpy(pair_geometry(region, points[first], points[second]))[None]
         with torch.inference_mode():
-            found = _array(self._network.values(maps, pairs)[0, :, 0])
+            found = _array(self._network.values(maps, pairs, geometry)[0, :, 0])
+        scores = affordance(region, points[first], points[second], self.config.gamma)
+        found[scores < self.config.least_affordance * scores.max()] = -np.inf
         values = np.full((len(points), len(points)), -np.inf)
         values[first, second] = values[second, first] = found
         return values

@@ -10,6 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from torch import Tensor, nn
 from torch.nn import functional
 
+from .pairs import GEOMETRY
+
 __all__ = ["NetworkConfig", "ValueNetwork", "sampled"]
 
 Variant = Literal["csam", "pair", "1sam", "2sam", "vertex-learned"]
@@ -81,13 +83,15 @@ class ValueNetwork(nn.Module):
             x = block(torch.cat([skip, functional.interpolate(x, scale_factor=2.0)], 1), condition)
         return functional.pixel_shuffle(self.exit(x), self.config.stem)[..., :height, :width]
 
-    def values(self, maps: Tensor, points: Tensor) -> Tensor:
+    def values(self, maps: Tensor, points: Tensor, geometry: Tensor) -> Tensor:
         """Values of trials, shape (B, K, V), whose two picks are at points of the maps [px], shape (B, K, 2, 2).
+
+        ``geometry``, shape (B, K, GEOMETRY), is what :func:`pair_geometry` says of them; only ``pair`` reads it.
 
         V is 1, but 2 for ``2sam``, whose two maps value a pick each.
         """
         if self.config.variant == "pair":
-            return self.head(sampled(maps, points[:, :, 0]), sampled(maps, points[:, :, 1]), points, maps.shape[-1])
+            return self.head(sampled(maps, points[:, :, 0]), sampled(maps, points[:, :, 1]), geometry)
         if self.config.variant == "2sam":
             return torch.cat([sampled(maps[:, k : k + 1], points[:, :, k]) for k in (0, 1)], -1)
         return sampled(maps, points[:, :, 0])
@@ -126,15 +130,13 @@ class _PairHead(nn.Module):
     def __init__(self, features: int) -> None:
         super().__init__()
         self.layers = nn.Sequential(
-            nn.Linear(3 * features + 3, 64), nn.LeakyReLU(SLOPE), nn.Linear(64, 64), nn.LeakyReLU(SLOPE)
+            nn.Linear(3 * features + GEOMETRY, 64), nn.LeakyReLU(SLOPE), nn.Linear(64, 64), nn.LeakyReLU(SLOPE)
         )
         self.exit = nn.Linear(64, 1)
         nn.init.zeros_(self.exit.weight)
         nn.init.zeros_(self.exit.bias)
 
-    def forward(self, first: Tensor, second: Tensor, points: Tensor, side: int) -> Tensor:
-        apart = (points[:, :, 0] - points[:, :, 1]) / side
-        geometry = torch.cat([apart.abs(), apart.norm(dim=-1, keepdim=True)], -1)
+    def forward(self, first: Tensor, second: Tensor, geometry: Tensor) -> Tensor:
         return self.exit(self.layers(torch.cat([first + second, first * second, (first - second).abs(), geometry], -1)))
 
 

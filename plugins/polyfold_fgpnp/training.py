@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -163,7 +164,7 @@ class _Run:
         low = self._config.precision == "bfloat16"
         with torch.autocast(self._device.type, torch.bfloat16, enabled=low):
             maps = self.network(images, self._tensor(some.lines))
-        predicted = self.network.values(maps.float(), self._tensor(some.points))
+        predicted = self.network.values(maps.float(), self._tensor(some.points), self._tensor(some.geometry))
         wanted = (self._tensor(some.labels) - self.mean) / self.deviation
         return predicted, wanted, self._tensor(some.valid)
 
@@ -246,7 +247,7 @@ def augmented(examples: Examples, network: NetworkConfig, rng: np.random.Generat
         if network.frame == "camera":
             for _ in range(rng.integers(4)):
                 images[index], points[index], lines[index] = _turned(images[index], points[index], lines[index], side)
-    return Examples(images, lines, points, examples.labels, examples.valid, examples.garments)
+    return replace(examples, images=images, lines=lines, points=points)
 
 
 def _reversed(line: NDArray[np.float32], side: int) -> NDArray[np.float32]:

@@ -10,9 +10,11 @@ import torch
 from drawn_scenes import SQUARE, TSHIRT, model_of, scene_of
 from few_folds import MIX
 from polyfold_fgpnp import training
+from polyfold_fgpnp.affordance import fold_region
 from polyfold_fgpnp.examples import TRIALS_OF, label, make_examples
 from polyfold_fgpnp.learned import CoupledActionMap, OneActionMap, PairValue, TwoActionMaps, VertexLearned
 from polyfold_fgpnp.networks import NetworkConfig, ValueNetwork
+from polyfold_fgpnp.pairs import pair_geometry
 from polyfold_fgpnp.ranks import rank_correlation
 from polyfold_fgpnp.train import read_config
 from polyfold_fgpnp.training import TrainingConfig, augmented, train
@@ -176,9 +178,12 @@ def test_a_network_s_pair_value_ignores_the_order_of_picks():
     network = ValueNetwork(NetworkConfig(variant="pair", base=4, levels=2)).eval()
     torch.nn.init.normal_(network.head.exit.weight)
     maps = network(torch.rand(1, 2, 128, 128), torch.zeros(1, 4))
-    points = 128 * torch.rand(1, 5, 2, 2)
-    assert torch.allclose(network.values(maps, points), network.values(maps, points.flip(2)), atol=1e-5)
-    assert network.values(maps, points).std() > 0
+    region = fold_region(LINES["half"][1], scene_of(model_of(SQUARE)))
+    first, second = region.points[:50:10], region.points[60:160:20]
+    points = torch.from_numpy(np.stack([first, second], 1)[None].astype(np.float32)) / 4
+    one, other = (torch.from_numpy(pair_geometry(region, *picks))[None] for picks in ((first, second), (second, first)))
+    assert torch.allclose(network.values(maps, points, one), network.values(maps, points.flip(2), other), atol=1e-5)
+    assert network.values(maps, points, one).std() > 0
 
 
 def test_a_variant_without_trials_says_what_to_collect(folds):
