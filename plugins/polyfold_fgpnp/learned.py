@@ -36,15 +36,15 @@ __all__ = ["CoupledActionMap", "LearnedPolicy", "OneActionMap", "PairValue", "Tw
 
 Floats = NDArray[np.float64]
 
-CANDIDATES = 80
-"""Contour points among which pairs are compared."""
+CANDIDATES = 72
+"""Contour points that a network which values pairs compares."""
 
 
 @lru_cache(maxsize=8)
-def _network(path: str, variant: str) -> ValueNetwork:
+def _network(path: str, variants: tuple[str, ...]) -> ValueNetwork:
     from .weights import load_weights
 
-    return load_weights(path, variant)[0]
+    return load_weights(path, *variants)[0]
 
 
 class LearnedConfig(PickConfig):
@@ -57,6 +57,8 @@ class LearnedPolicy(ABC):
     """Asks a value network and picks where it promises most."""
 
     variant: ClassVar[str]
+    also: ClassVar[tuple[str, ...]] = ()
+    """Other variants of the network that serve."""
 
     class Config(LearnedConfig):
         """Parameters."""
@@ -64,7 +66,7 @@ class LearnedPolicy(ABC):
     def __init__(self, config: LearnedConfig | None = None) -> None:
         self.config = config or self.Config()
         shipped = files("polyfold_fgpnp") / "weights" / f"{self.variant}.safetensors"
-        self._network = _network(self.config.weights or str(shipped), self.variant)
+        self._network = _network(self.config.weights or str(shipped), (self.variant, *self.also))
 
     def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
         """Pick where the network promises most; ``rng`` is not used.
@@ -109,23 +111,52 @@ class LearnedPolicy(ABC):
             mirrored = both[1:].flip(2)
             return (both[:1] + (mirrored.flip(1) if self.variant == "2sam" else mirrored)) / 2, seen.frame
 
+    def _pair_values(self, region: FoldRegion, scene: Scene, first: Floats, second: Floats) -> Floats:
+        """Value of pairs of points [px], each of shape (K, 2), by a network that values pairs: shape (K,)."""
+        import torch
+
+        maps, frame = self._maps(region, scene)
+        at = torch.stack([_points(frame, first), _points(frame, second)], 1)[None]
+        geometry = torch.from_numpy(pair_geometry(region, first, second))[None]
+        with torch.inference_mode():
+            return _array(self._network.values(maps, at, geometry)[0, :, 0])
+
 
 class CoupledActionMap(LearnedPolicy):
     """The contour point with the highest value in the coupled spatial action map; its partner by affordance.
 
-    The partner moves a little towards the first pick, as in training (see :func:`coupled_pick`).
+    The partner moves a little towards the first pick, as in training (see :func:`coupled_pick`). With a network that
+    values pairs, a point's value is that of itself and its partner.
     """
 
     variant: ClassVar[str] = "csam"
+    also: ClassVar[tuple[str, ...]] = ("pair",)
 
     class Config(LearnedConfig):
         """Parameters."""
 
         slide: float = Field(PARTNER_SLIDE, ge=0, lt=0.5, description="share of their distance that the partner moves")
 
+    def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
+        """The lifted contour [px], shape (N, 2), and the value of picking there, shape (N,); higher is better."""
+        points, _, values = self._coupled(fold_region(fold_line, scene), scene)
+        return points, values
+
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
-        first = region.points[int(np.argmax(self._values(region, scene)[0]))]
-        return first, coupled_pick(region, first, self.config, self.config.slide)
+        points, partners, values = self._coupled(region, scene)
+        best = int(np.argmax(values))
+        return points[best], partners[best] if partners is not None else self._partner(region, points[best])
+
+    def _coupled(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats | None, Floats]:
+        """Points, their partners if the network asks for them, and values."""
+        if self._network.config.variant == "csam":
+            return region.points, None, self._values(region, scene)[0]
+        points = _thinned(region.points)
+        partners = np.array([self._partner(region, point) for point in points])
+        return points, partners, self._pair_values(region, scene, points, partners)
+
+    def _partner(self, region: FoldRegion, first: Floats) -> Floats:
+        return coupled_pick(region, first, self.config, self.config.slide)
 
 
 class VertexLearned(LearnedPolicy):
@@ -175,33 +206,30 @@ class PairValue(LearnedPolicy):
         least_affordance: float = Field(0.65, ge=0, le=1, description="pairs need this share of the best affordance")
 
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
-        points = region.points[:: max(1, len(region.points) // CANDIDATES)]
-        values = self._pair_values(region, scene, points)
+        points, values = self._all_pairs(region, scene)
         first, second = np.unravel_index(int(np.argmax(values)), values.shape)
         return points[first], points[second]
 
     def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
         """The lifted contour [px], shape (N, 2), and the value of picking there with the best partner, shape (N,)."""
-        region = fold_region(fold_line, scene)
-        points = region.points[:: max(1, len(region.points) // CANDIDATES)]
-        return points, self._pair_values(region, scene, points).max(axis=1)
+        points, values = self._all_pairs(fold_region(fold_line, scene), scene)
+        return points, values.max(axis=1)
 
-    def _pair_values(self, region: FoldRegion, scene: Scene, points: Floats) -> Floats:
-        """Value of every pair among N points, symmetric, shape (N, N)."""
-        import torch
-
-        maps, frame = self._maps(region, scene)
-        at = _points(frame, points)
+    def _all_pairs(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
+        """N points of the contour, shape (N, 2), and the value of every pair of them, symmetric, shape (N, N)."""
+        points = _thinned(region.points)
         first, second = np.triu_indices(len(points))
-        pairs = torch.stack([at[first], at[second]], 1)[None]
-        geometry = torch.from_numpy(pair_geometry(region, points[first], points[second]))[None]
-        with torch.inference_mode():
-            found = _array(self._network.values(maps, pairs, geometry)[0, :, 0])
+        found = self._pair_values(region, scene, points[first], points[second])
         scores = affordance(region, points[first], points[second], self.config.gamma)
-        found[scores < self.config.least_affordance * scores.max()] = -np.inf
-        values = np.full((len(points), len(points)), -np.inf)
+        found[scores < self.config.least_affordance * scores.max()] = found.min()
+        values = np.empty((len(points), len(points)))
         values[first, second] = values[second, first] = found
-        return values
+        return points, values
+
+
+def _thinned(points: Floats) -> Floats:
+    """At most :data:`CANDIDATES` of the points, evenly spread."""
+    return points[np.linspace(0, len(points) - 1, min(len(points), CANDIDATES)).astype(int)]
 
 
 def _points(frame: Frame, points: Floats) -> Tensor:

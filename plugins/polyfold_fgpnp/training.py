@@ -45,6 +45,7 @@ class TrainingConfig(BaseModel):
     folds: int | None = Field(None, ge=1, description="use the first so many folds of each data set")
     reward: Literal["contour", "particles"] = Field("particles", description="what counts as good")
     scale: Literal["linear", "log"] = Field("log", description="how rewards become labels")
+    state_weight: float = Field(1.0, ge=0, description="weight of the error that all picks of a state share; 1: MSE")
     epochs: int = Field(60, ge=1, description="passes over all states")
     batch: int = Field(32, ge=1, description="states in a step")
     learning_rate: float = Field(2e-3, gt=0, description="largest, of AdamW")
@@ -145,7 +146,7 @@ class _Run:
         for group in self._optimizer.param_groups:
             group["lr"] = self._config.learning_rate * self._rate(step)
         predicted, wanted, valid = self._predict(some)
-        loss = ((predicted - wanted[..., None]).square().mean(-1) * valid).sum() / valid.sum()
+        loss = _loss(predicted - wanted[..., None], valid, self._config.state_weight)
         self._optimizer.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), CLIP)
@@ -215,6 +216,14 @@ class _Run:
             state.setdefault(int(index), {})[key] = tensor
         self._optimizer.load_state_dict({**self._optimizer.state_dict(), "state": state})
         return epoch
+
+
+def _loss(errors: Tensor, valid: Tensor, state_weight: float) -> Tensor:
+    """Mean square of the errors of valid trials, shape (B, K, V); what a state's trials share is weighted."""
+    there = valid[..., None].float()
+    shared = (errors * there).sum(1, keepdim=True) / there.sum(1, keepdim=True)
+    squares = (errors - shared).square() + state_weight * shared.square()
+    return (squares.mean(-1) * valid).sum() / valid.sum()
 
 
 def _under(prefix: str, tensors: Mapping[str, Tensor]) -> dict[str, Tensor]:

@@ -61,12 +61,12 @@ def save_weights(path: str | Path, network: ValueNetwork, provenance: Provenance
     part.replace(path)
 
 
-def load_weights(path: str | Path, variant: str | None = None) -> tuple[ValueNetwork, Provenance]:
+def load_weights(path: str | Path, *variants: str) -> tuple[ValueNetwork, Provenance]:
     """Read a network, ready to predict, and where it comes from.
 
     Args:
         path: a file of :func:`save_weights`.
-        variant: what the network must be.
+        variants: one of which the network must be; any if none is given.
 
     Raises:
         ConfigError: if there is no such file, it is no such file, its hashes do not match, or it is another variant.
@@ -92,8 +92,8 @@ def load_weights(path: str | Path, variant: str | None = None) -> tuple[ValueNet
             f"{path} does not match its own hashes: it is damaged or was changed; train or install it again"
         )
     config = NetworkConfig(**found.config["network"])
-    if variant is not None and config.variant != variant:
-        raise ConfigError(f"{path} holds weights for {config.variant}, not for {variant}; give others")
+    if variants and config.variant not in variants:
+        raise ConfigError(f"{path} holds weights for {config.variant}, not for {' or '.join(variants)}; give others")
     network = ValueNetwork(config)
     network.load_state_dict(tensors)
     return network.eval(), found

@@ -125,10 +125,11 @@ def test_weights_that_were_changed_are_refused(weights, tmp_path):
         load_weights(tmp_path / "text.safetensors")
 
 
-@pytest.mark.parametrize("variant", POLICIES)
+@pytest.mark.parametrize("variant", [*POLICIES, "csam with pair"])
 @pytest.mark.parametrize(("corners", "line"), LINES.values(), ids=LINES)
 def test_learned_policies_pick_on_the_cloth_left_of_the_line(variant, corners, line, weights):
-    policy = POLICIES[variant](POLICIES[variant].Config(weights=str(weights[variant])))
+    cls = POLICIES[variant.split()[0]]
+    policy = cls(cls.Config(weights=str(weights[variant.split()[-1]])))
     assert isinstance(policy, Policy)
     scene = scene_of(model_of(corners))
     action = policy.act(line, scene, np.random.default_rng(0))
@@ -139,6 +140,9 @@ def test_learned_policies_pick_on_the_cloth_left_of_the_line(variant, corners, l
     assert scene.mask[rows, columns].all()
     assert action.places == pytest.approx(line.mirror(action.picks), abs=1e-6)
     assert action.arms == 1 or variant != "1sam"
+    points, values = policy.action_map(line, scene)
+    assert len(points) == len(values) > 20
+    assert np.isfinite(values).all()
 
 
 def test_canonical_maps_are_symmetric_on_a_symmetric_flap(weights):
