@@ -17,10 +17,14 @@ from polyfold.geometry import span_on_mask
 from polyfold.types import Action, FoldLine, Scene
 
 __all__ = [
+    "PARTNER_SLIDE",
     "FoldRegion",
     "PickConfig",
+    "affordance",
     "best_pair",
+    "coupled_pick",
     "fold_region",
+    "lifted_vertices",
     "nearest_point",
     "quadrilateral_area",
     "second_pick",
@@ -33,8 +37,14 @@ Floats = NDArray[np.float64]
 LEAST_DEPTH_PX = 4.0
 """A part that reaches less far from the line than this can't be grasped without grasping what should stay."""
 
+NEAR_CONTOUR_PX = 25.0
+"""A vertex farther than this from the contour lies on top of the cloth, not at its edge."""
+
 SIDE_SHARE = 0.3
 """Pieces left of the line that reach less than this share as far from it as the largest one aren't picked at."""
+
+PARTNER_SLIDE = 0.1
+"""How far a second pick moves towards the first along the contour, as a share of their distance; not in the paper."""
 
 GAP_PX = 4.0
 """Neighbours on the contour lie closer than this; a longer step leads over the fold line to another piece."""
@@ -188,16 +198,22 @@ def _cross(a: Floats, b: Floats) -> Floats:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
+def affordance(region: FoldRegion, first: ArrayLike, second: ArrayLike, gamma: float) -> Floats:
+    """The score S / S_max + gamma (l(first) + l(second)) / sqrt(S_max) of pairs of points [px] that broadcast."""
+    line = region.fold_line
+    areas = quadrilateral_area(line.start, line.end, first, second)
+    distances = line.distance(first) + line.distance(second)
+    return areas / region.box_area + gamma * distances / np.sqrt(region.box_area)
+
+
 def best_pair(region: FoldRegion, gamma: float) -> tuple[Floats, Floats]:
     """The two contour pixels with the highest affordance score, each of shape (2,); the same one twice is possible.
 
     The score is ``S(start, end, p, q) / S_max + gamma (l(p) + l(q)) / sqrt(S_max)``. It is convex in p and in q, so its
     maximum over all contour pixels is attained at corners of their convex hull: comparing these few is exact.
     """
-    points, distances = _hull_corners(region)
-    line = region.fold_line
-    areas = quadrilateral_area(line.start, line.end, points[:, None], points[None, :])
-    score = areas / region.box_area + gamma * (distances[:, None] + distances) / np.sqrt(region.box_area)
+    points = _hull_corners(region)
+    score = affordance(region, points[:, None], points[None, :], gamma)
     first, second = np.unravel_index(_first_best(score.ravel()), score.shape)
     return points[first], points[second]
 
@@ -208,16 +224,19 @@ def second_pick(region: FoldRegion, first: ArrayLike, gamma: float) -> Floats:
     It maximises ``S(start, end, first, p) / S_max + gamma l(p) / sqrt(S_max)`` over all contour pixels (paper,
     Sec. IV-D); as for :func:`best_pair`, corners of their convex hull are enough.
     """
-    points, distances = _hull_corners(region)
-    areas = quadrilateral_area(region.fold_line.start, region.fold_line.end, first, points)
-    return points[_first_best(areas / region.box_area + gamma * distances / np.sqrt(region.box_area))]
+    points = _hull_corners(region)
+    return points[_first_best(affordance(region, first, points, gamma))]
 
 
-def _hull_corners(region: FoldRegion) -> tuple[Floats, Floats]:
+def coupled_pick(region: FoldRegion, first: ArrayLike, config: PickConfig, share: float = PARTNER_SLIDE) -> Floats:
+    """The :func:`second_pick` of a first pick, moved a little towards it along the contour (see :func:`slide`)."""
+    return slide(region, second_pick(region, first, config.gamma), first, share)
+
+
+def _hull_corners(region: FoldRegion) -> Floats:
     import cv2
 
-    corners = np.sort(cv2.convexHull(region.points.astype(np.float32), returnPoints=False).ravel())
-    return region.points[corners], region.distances[corners]
+    return region.points[np.sort(cv2.convexHull(region.points.astype(np.float32), returnPoints=False).ravel())]
 
 
 def _first_best(scores: Floats) -> int:
@@ -304,3 +323,22 @@ def _pull_back(picks: Floats, places: Floats, width: int, height: int) -> Floats
 def nearest_point(points: Floats, to: ArrayLike) -> Floats:
     """The one among points, shape (N, 2), that is nearest to a point of shape (2,)."""
     return points[np.argmin(((points - np.asarray(to, float)) ** 2).sum(1))]
+
+
+def lifted_vertices(region: FoldRegion, scene: Scene) -> Floats:
+    """Visible vertices left of the line and near the lifted contour [px], shape (N, 2), in the model's order.
+
+    Raises PlanError when the scene has no polygon model, or no such vertex.
+    """
+    if scene.model is None:
+        raise PlanError("this policy picks at polygon vertices, and the scene has no polygon; ground with polygon")
+    visible = [state.point for state in scene.model.vertices().values() if state.visible]
+    points = np.array(visible, float).reshape(-1, 2)
+    lifted = [
+        point
+        for point in points[region.fold_line.lifts(points)]
+        if np.hypot(*(nearest_point(region.points, point) - point)) <= NEAR_CONTOUR_PX
+    ]
+    if not lifted:
+        raise PlanError("no visible polygon vertex lies on the contour left of the fold line; use the policy caso")
+    return np.array(lifted)

@@ -5,15 +5,21 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
-from polyfold.errors import PlanError
 from polyfold.types import Action, FoldLine, Scene
 
-from .affordance import FoldRegion, PickConfig, best_pair, fold_region, nearest_point, second_pick, slide, to_action
+from .affordance import (
+    FoldRegion,
+    PickConfig,
+    best_pair,
+    fold_region,
+    lifted_vertices,
+    nearest_point,
+    second_pick,
+    slide,
+    to_action,
+)
 
 __all__ = ["Caso", "Farthest", "VertexRandom"]
-
-NEAR_CONTOUR_PX = 25.0
-"""A vertex farther than this from the contour lies on top of the cloth, not at its edge."""
 
 
 class Caso:
@@ -56,7 +62,7 @@ class VertexRandom:
         Raises PlanError also when the scene has no polygon model.
         """
         region = fold_region(fold_line, scene)
-        vertices = _lifted_vertices(region, scene)
+        vertices = lifted_vertices(region, scene)
         first = nearest_point(region.points, vertices[rng.integers(len(vertices))])
         return to_action(region, first, second_pick(region, first, self.config.gamma), self.config)
 
@@ -79,19 +85,3 @@ class Farthest:
 
 def _farthest(region: FoldRegion) -> np.ndarray:
     return region.points[np.argmax(region.distances)]
-
-
-def _lifted_vertices(region: FoldRegion, scene: Scene) -> np.ndarray:
-    """Visible vertices left of the line and near the lifted contour [px], shape (N, 2), in the model's order."""
-    if scene.model is None:
-        raise PlanError("this policy picks at polygon vertices, and the scene has no polygon; ground with polygon")
-    visible = [state.point for state in scene.model.vertices().values() if state.visible]
-    points = np.array(visible, float).reshape(-1, 2)
-    lifted = [
-        point
-        for point in points[region.fold_line.lifts(points)]
-        if np.hypot(*(nearest_point(region.points, point) - point)) <= NEAR_CONTOUR_PX
-    ]
-    if not lifted:
-        raise PlanError("no visible polygon vertex lies on the contour left of the fold line; use the policy caso")
-    return np.array(lifted)

@@ -9,3 +9,17 @@ def register_policies(register):
     register("caso", "polyfold_fgpnp.caso:Caso", "the best pair of picks by affordance, no learning")
     register("vertex-random", "polyfold_fgpnp.caso:VertexRandom", "a random polygon vertex, the second pick by caso")
     register("farthest", "polyfold_fgpnp.caso:Farthest", "the point farthest from the line, the second pick by caso")
+    learned = "polyfold_fgpnp.learned"
+    register("csam+caso", f"{learned}:CoupledActionMap", "the best point of a learned map, the second pick by caso")
+    register("vertex-learned", f"{learned}:VertexLearned", "the best polygon vertex by a learned value, then caso")
+    register("1sam", f"{learned}:OneActionMap", "one arm at the best point of a learned map")
+    register("2sam", f"{learned}:TwoActionMaps", "two arms at the best points of two learned maps")
+    register("pair", f"{learned}:PairValue", "the two points with the best learned joint value")
+
+
+@hookimpl
+def register_commands(register):
+    """Register the verbs."""
+    register("collect", "polyfold_fgpnp.collect:Collect", "fold at random in simulation and record how it came out")
+    register("train", "polyfold_fgpnp.train:Train", "learn a value network from random folds")
+    register("maps", "polyfold_fgpnp.maps:Maps", "draw learned spatial action maps over garments")

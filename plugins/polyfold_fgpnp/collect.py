@@ -1,0 +1,111 @@
+"""``polyfold collect``: fold at random in simulation and record how it came out, for training."""
+
+from __future__ import annotations
+
+import argparse
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from polyfold.errors import ConfigError
+
+if TYPE_CHECKING:
+    from .dataset import Description
+    from .interaction import Interaction
+
+__all__ = ["Collect", "collect"]
+
+
+class Collect:
+    """The verb."""
+
+    @staticmethod
+    def configure(parser: argparse.ArgumentParser) -> None:
+        """Add the options."""
+        parser.add_argument("--out", type=Path, metavar="DIR", help="data set; resumed if it exists")
+        parser.add_argument(
+            "--describe", type=Path, metavar="DIR", help="show what a data set holds instead of collecting"
+        )
+        parser.add_argument(
+            "--folds", type=int, default=10_000, metavar="N", help="at least this many (default: 10000)"
+        )
+        parser.add_argument("--kind", default="tshirt", help="kind of garment (default: tshirt)")
+        parser.add_argument("--seeds", default="1000-1099", metavar="A-B", help="garment seeds (default: 1000-1099)")
+        parser.add_argument(
+            "--workers", type=int, default=1, metavar="N", help="processes on this machine (default: 1)"
+        )
+        parser.add_argument(
+            "--edge-length", type=float, default=0.018, metavar="M", help="of the mesh (default: 0.018)"
+        )
+        parser.add_argument("--mix", metavar="RECIPE=COUNT,...", help="picks tried from every state, by recipe")
+        parser.add_argument("--seed", type=int, default=0, help="of everything random (default: 0)")
+
+    @staticmethod
+    def run(arguments: argparse.Namespace) -> int:
+        """Collect, or describe."""
+        from .describe import describe
+        from .interaction import Interaction
+        from .trials import MIX, parse_mix
+
+        if (arguments.out is None) == (arguments.describe is None):
+            raise ConfigError("say either where to collect (--out DIR) or what to show (--describe DIR)")
+        if arguments.describe is not None:
+            print(describe(arguments.describe))
+            return 0
+        interaction = Interaction(
+            kind=arguments.kind,
+            seeds=_seeds(arguments.seeds),
+            edge_length=arguments.edge_length,
+            mix=parse_mix(arguments.mix) if arguments.mix else dict(MIX),
+            seed=arguments.seed,
+        )
+        try:
+            found = collect(interaction, arguments.folds, arguments.out, arguments.workers)
+        except KeyboardInterrupt:
+            print(f"interrupted; what is finished is in {arguments.out}, run the same command to go on")
+            raise
+        counts = found["counts"]
+        print(
+            f"{counts['folds']} folds from {counts['states']} states in {arguments.out}, {counts['diverged']} diverged"
+        )
+        return 0
+
+
+def collect(
+    interaction: Interaction, folds: int, out: str | Path, workers: int = 1, progress: bool = True
+) -> Description:
+    """Run what a data set's folder lacks and finish it.
+
+    Args:
+        interaction: what to try.
+        folds: at least this many folds in all; whole jobs are run.
+        out: the folder; resumed if it holds a data set with the same parameters.
+        workers: processes on this machine.
+        progress: show a progress bar.
+
+    Raises:
+        ConfigError: if the folder holds a data set with other parameters.
+    """
+    from tqdm import tqdm
+
+    from .dataset import DatasetFolder
+    from .interaction import explore, trials_per_job
+    from .workers import in_processes
+
+    folder = DatasetFolder(out, interaction.model_dump(mode="json"))
+    each = trials_per_job(interaction.mix)
+    total = -(-folds // each)
+    done = folder.jobs()
+    missing = [job for job in range(total) if job not in done]
+    with tqdm(total=total * each, initial=(total - len(missing)) * each, unit="fold", disable=not progress) as bar:
+        for job, arrays in in_processes(partial(explore, interaction), missing, workers):
+            folder.write(job, arrays)
+            bar.update(each)
+    return folder.finish()
+
+
+def _seeds(text: str) -> tuple[int, int]:
+    first, _, last = text.partition("-")
+    if not (first.isdigit() and last.isdigit() and int(first) <= int(last)):
+        raise ConfigError(f"--seeds {text!r} does not read A-B; for example 1000-1099")
+    return int(first), int(last)

@@ -1,0 +1,207 @@
+"""Random interaction: states of a garment, flat and already folded, and the outcome of many picks from each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from polyfold import plugins
+from polyfold.errors import GroundingError, PlanError, SimulationError
+from polyfold.garments import Garment
+from polyfold.geometry import contour_of
+from polyfold.interfaces import Segmenter, Simulator
+from polyfold.types import Action, FoldLine, Observation, Scene, SimState
+
+from .affordance import FoldRegion, PickConfig, to_action
+from .caso import Caso
+from .lines import LINE_KINDS, PLAUSIBLE, RandomLine, random_line
+from .outcomes import Expectation, Outcome, expect, particle_reward
+from .trials import MIX, RECIPES, draw_trials
+
+__all__ = ["LINES_PER_STAGE", "Interaction", "Situation", "execute", "explore", "situations", "trials_per_job"]
+
+LINES_PER_STAGE = (2, 1, 1)
+"""Fold lines tried on the flat garment, after one good fold, and after two."""
+
+GOOD_FOLD = 0.75
+"""A fold on the way to a folded state counts as good from this particle reward on."""
+
+ATTEMPTS = 4
+"""Lines tried for one good fold; without one the garment stays as it is."""
+
+
+class Interaction(BaseModel):
+    """Parameters of random interaction; the same ones and the same job give the same data."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    kind: str = Field("tshirt", description="garment kind")
+    seeds: tuple[int, int] = Field((1000, 1099), description="first and last garment seed")
+    edge_length: float = Field(0.018, gt=0.005, le=0.05, description="edge length of the mesh [m]")
+    mix: Mapping[str, int] = Field(default_factory=lambda: dict(MIX), description="trials of each recipe from a state")
+    simulator: Mapping[str, Any] = Field(default_factory=dict, description="parameters of the simulator xpbd")
+    seed: int = Field(0, ge=0, description="of everything random")
+
+
+@dataclass(frozen=True, eq=False)
+class Situation:
+    """A garment as it lies and a fold line across it.
+
+    Attributes:
+        garment_seed: which garment.
+        folds_before: good folds that led here.
+        line: the fold line, its kind and what it lifts.
+        scene: what is seen, without a polygon model.
+        state: what to restore before each trial.
+        expectation: what the ideal fold would give.
+        rng: generator for the picks.
+    """
+
+    garment_seed: int
+    folds_before: int
+    line: RandomLine
+    scene: Scene
+    state: SimState
+    expectation: Expectation
+    rng: np.random.Generator
+
+    @property
+    def region(self) -> FoldRegion:
+        """What the fold line lifts."""
+        return self.line.region
+
+
+@lru_cache(maxsize=2)
+def _tools(kind: str, seed: int, edge_length: float, simulator: tuple) -> tuple[Garment, Simulator, Segmenter]:
+    return (
+        plugins.create("garments", kind).generate(seed, edge_length),
+        plugins.create("simulators", "xpbd", dict(simulator)),
+        plugins.create("segmenters", "colour"),
+    )
+
+
+def trials_per_job(mix: Mapping[str, int]) -> int:
+    """Folds that one job tries."""
+    return sum(LINES_PER_STAGE) * sum(mix.values())
+
+
+def situations(interaction: Interaction, job: int) -> Iterator[tuple[Simulator, Segmenter, Situation]]:
+    """The states and fold lines of one job: one garment, flat, after one good fold and after two.
+
+    Each comes with the simulator that is in that state, and with the segmenter.
+    """
+    first, last = interaction.seeds
+    garment_seed = first + job % (last - first + 1)
+    rng = np.random.default_rng([interaction.seed, job])
+    settings = tuple(sorted(interaction.simulator.items()))
+    garment, simulator, segmenter = _tools(interaction.kind, garment_seed, interaction.edge_length, settings)
+    observation = simulator.reset(garment, int(rng.integers(2**31)))
+    folds = 0
+    for stage, lines in enumerate(LINES_PER_STAGE):
+        if stage > 0:
+            folded = _good_fold(simulator, segmenter, observation, interaction.kind, rng)
+            observation, folds = (observation, folds) if folded is None else (folded, folds + 1)
+        state = simulator.state()
+        scene = scene_of(observation, segmenter, interaction.kind)
+        for _ in range(lines):
+            line = random_line(scene, rng, LINE_KINDS)
+            expectation = expect(line.region, scene.mask, state)
+            own = np.random.default_rng(rng.integers(2**63))
+            yield simulator, segmenter, Situation(garment_seed, folds, line, scene, state, expectation, own)
+        simulator.restore(state)
+
+
+def scene_of(observation: Observation, segmenter: Segmenter, kind: str) -> Scene:
+    """The scene without a polygon model."""
+    mask = segmenter.segment(observation)
+    return Scene(kind, (observation.camera.width, observation.camera.height), mask, contour_of(mask), None, "{}")
+
+
+def _good_fold(
+    simulator: Simulator, segmenter: Segmenter, before: Observation, kind: str, rng: np.random.Generator
+) -> Observation | None:
+    """Fold along a plausible line with the best pair of picks; None if no attempt came out well."""
+    state, scene = simulator.state(), scene_of(before, segmenter, kind)
+    for _ in range(ATTEMPTS):
+        try:
+            drawn = random_line(scene, rng, PLAUSIBLE)
+            expectation = expect(drawn.region, scene.mask, state)
+            after = simulator.execute(Caso().act(drawn.line, scene, rng))
+            outcome = expectation.judge(segmenter.segment(after), simulator.state())
+        except (PlanError, SimulationError, GroundingError):
+            simulator.restore(state)
+            continue
+        if particle_reward(outcome.flap_mm, expectation.travel_mm) >= GOOD_FOLD:
+            return after
+        simulator.restore(state)
+    return None
+
+
+def execute(
+    simulator: Simulator, segmenter: Segmenter, situation: Situation, action: Action
+) -> tuple[Outcome | None, NDArray[np.bool_]]:
+    """Try an action from a situation: how it came out, and the resulting mask; no outcome if the cloth diverged."""
+    simulator.restore(situation.state)
+    try:
+        after = simulator.execute(action)
+    except SimulationError:
+        return None, np.zeros_like(situation.scene.mask)
+    try:
+        mask = segmenter.segment(after)
+    except GroundingError:
+        mask = np.zeros_like(situation.scene.mask)
+    return situation.expectation.judge(mask, simulator.state()), mask
+
+
+def explore(interaction: Interaction, job: int) -> dict[str, NDArray[Any]]:
+    """One job as the arrays of a shard (see :mod:`polyfold_fgpnp.dataset`)."""
+    states: list[dict[str, Any]] = []
+    trials: list[dict[str, Any]] = []
+    for simulator, segmenter, situation in situations(interaction, job):
+        states.append(_state_row(situation))
+        for trial in draw_trials(situation.region, interaction.mix, situation.rng):
+            action = to_action(situation.region, trial.first, trial.second, PickConfig())
+            outcome, mask = execute(simulator, segmenter, situation, action)
+            row = {
+                "trial_state": np.int32(len(states) - 1),
+                "recipe": np.int8(list(RECIPES).index(trial.recipe)),
+                "first": trial.first.astype(np.float32),
+                "second": trial.second.astype(np.float32),
+                "picks": _padded(action.picks),
+                "diverged": np.bool_(outcome is None),
+                "result": np.packbits(mask),
+            }
+            found = outcome or Outcome(np.nan, np.nan, np.nan, np.nan)
+            row |= {name: np.float32(value) for name, value in vars(found).items()}
+            trials.append(row)
+    return _columns(states) | _columns(trials)
+
+
+def _state_row(situation: Situation) -> dict[str, Any]:
+    line: FoldLine = situation.line.line
+    return {
+        "mask": np.packbits(situation.scene.mask),
+        "line": np.array([*line.start, *line.end], np.float32),
+        "line_kind": np.int8(LINE_KINDS.index(situation.line.kind)),
+        "garment_seed": np.int32(situation.garment_seed),
+        "folds_before": np.int8(situation.folds_before),
+        "pixels_per_metre": np.float32(situation.state.camera.pixels_per_metre),
+        "idle_chamfer_px": np.float32(situation.expectation.idle_chamfer_px),
+        "travel_mm": np.float32(situation.expectation.travel_mm),
+    }
+
+
+def _padded(picks: NDArray[np.float64]) -> NDArray[np.float32]:
+    padded = np.full((2, 2), np.nan, np.float32)
+    padded[: len(picks)] = picks
+    return padded
+
+
+def _columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, NDArray[Any]]:
+    return {name: np.stack([row[name] for row in rows]) for name in rows[0]} if rows else {}

@@ -1,0 +1,242 @@
+"""Policies that choose picks by a learned value: the coupled spatial action map and its ablations (paper, Table IV)."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from functools import lru_cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from polyfold.types import Action, FoldLine, Scene
+
+from .affordance import (
+    PARTNER_SLIDE,
+    FoldRegion,
+    PickConfig,
+    affordance,
+    coupled_pick,
+    fold_region,
+    lifted_vertices,
+    nearest_point,
+    to_action,
+)
+from .frames import Frame, view
+from .pairs import pair_geometry
+
+if TYPE_CHECKING:
+    from torch import Tensor
+
+    from .networks import ValueNetwork
+
+__all__ = ["CoupledActionMap", "LearnedPolicy", "OneActionMap", "PairValue", "TwoActionMaps", "VertexLearned"]
+
+Floats = NDArray[np.float64]
+
+CANDIDATES = 72
+"""Contour points that a network which values pairs compares."""
+
+
+@lru_cache(maxsize=8)
+def _network(path: str, variants: tuple[str, ...]) -> ValueNetwork:
+    from .weights import load_weights
+
+    return load_weights(path, *variants)[0]
+
+
+class LearnedConfig(PickConfig):
+    """Parameters that the learned policies share."""
+
+    weights: str = Field("", description="file of `polyfold train`; empty for those that come with the package")
+
+
+class LearnedPolicy(ABC):
+    """Asks a value network and picks where it promises most."""
+
+    variant: ClassVar[str]
+    also: ClassVar[tuple[str, ...]] = ()
+    """Other variants of the network that serve."""
+
+    class Config(LearnedConfig):
+        """Parameters."""
+
+    def __init__(self, config: LearnedConfig | None = None) -> None:
+        self.config = config or self.Config()
+        shipped = files("polyfold_fgpnp") / "weights" / f"{self.variant}.safetensors"
+        self._network = _network(self.config.weights or str(shipped), (self.variant, *self.also))
+
+    def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
+        """Pick where the network promises most; ``rng`` is not used.
+
+        Raises:
+            PlanError: if no cloth lies left of the line.
+        """
+        region = fold_region(fold_line, scene)
+        first, second = self._choose(region, scene)
+        return to_action(region, first, second, self.config)
+
+    def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
+        """The lifted contour [px], shape (N, 2), and the value of picking there, shape (N,); higher is better."""
+        region = fold_region(fold_line, scene)
+        return region.points, self._values(region, scene).mean(axis=0)
+
+    @abstractmethod
+    def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
+        """Two contour points [px], each of shape (2,)."""
+
+    def _values(self, region: FoldRegion, scene: Scene) -> Floats:
+        """Value of every contour point in each map, shape (maps, N)."""
+        from .networks import sampled
+
+        maps, frame = self._maps(region, scene)
+        return _array(sampled(maps, _points(frame, region.points)[None])[0].T)
+
+    def _maps(self, region: FoldRegion, scene: Scene) -> tuple[Tensor, Frame]:
+        """The network's maps, shape (1, C, H, W), and where the camera's pixels are in them.
+
+        In the canonical frame they are averaged with those of the mirror image, so that they are symmetric too.
+        """
+        import torch
+
+        seen = view(region, scene.mask, self._network.config.frame)
+        image = torch.from_numpy(seen.image)[None].float() / 255
+        line = torch.from_numpy(seen.line)[None]
+        with torch.inference_mode():
+            if self._network.config.frame == "camera":
+                return self._network(image, line), seen.frame
+            both = self._network(torch.cat([image, image.flip(2)]), line.expand(2, -1))
+            mirrored = both[1:].flip(2)
+            return (both[:1] + (mirrored.flip(1) if self.variant == "2sam" else mirrored)) / 2, seen.frame
+
+    def _pair_values(self, region: FoldRegion, scene: Scene, first: Floats, second: Floats) -> Floats:
+        """Value of pairs of points [px], each of shape (K, 2), by a network that values pairs: shape (K,)."""
+        import torch
+
+        maps, frame = self._maps(region, scene)
+        at = torch.stack([_points(frame, first), _points(frame, second)], 1)[None]
+        geometry = torch.from_numpy(pair_geometry(region, first, second))[None]
+        with torch.inference_mode():
+            return _array(self._network.values(maps, at, geometry)[0, :, 0])
+
+
+class CoupledActionMap(LearnedPolicy):
+    """The contour point with the highest value in the coupled spatial action map; its partner by affordance.
+
+    The partner moves a little towards the first pick, as in training (see :func:`coupled_pick`). With a network that
+    values pairs, a point's value is that of itself and its partner.
+    """
+
+    variant: ClassVar[str] = "csam"
+    also: ClassVar[tuple[str, ...]] = ("pair",)
+
+    class Config(LearnedConfig):
+        """Parameters."""
+
+        slide: float = Field(PARTNER_SLIDE, ge=0, lt=0.5, description="share of their distance that the partner moves")
+
+    def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
+        """The lifted contour [px], shape (N, 2), and the value of picking there, shape (N,); higher is better."""
+        points, _, values = self._coupled(fold_region(fold_line, scene), scene)
+        return points, values
+
+    def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
+        points, partners, values = self._coupled(region, scene)
+        best = int(np.argmax(values))
+        return points[best], partners[best] if partners is not None else self._partner(region, points[best])
+
+    def _coupled(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats | None, Floats]:
+        """Points, their partners if the network asks for them, and values."""
+        if self._network.config.variant == "csam":
+            return region.points, None, self._values(region, scene)[0]
+        points = _thinned(region.points)
+        partners = np.array([self._partner(region, point) for point in points])
+        return points, partners, self._pair_values(region, scene, points, partners)
+
+    def _partner(self, region: FoldRegion, first: Floats) -> Floats:
+        return coupled_pick(region, first, self.config, self.config.slide)
+
+
+class VertexLearned(LearnedPolicy):
+    """The polygon vertex with the highest value; its partner by affordance. Needs a polygon model."""
+
+    variant: ClassVar[str] = "vertex-learned"
+
+    def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
+        vertices = [nearest_point(region.points, vertex) for vertex in lifted_vertices(region, scene)]
+        indices = [int(np.argmin(((region.points - vertex) ** 2).sum(1))) for vertex in vertices]
+        first = region.points[indices[int(np.argmax(self._values(region, scene)[0][indices]))]]
+        return first, coupled_pick(region, first, self.config)
+
+
+class OneActionMap(LearnedPolicy):
+    """One arm, at the contour point with the highest value."""
+
+    variant: ClassVar[str] = "1sam"
+
+    def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
+        pick = region.points[int(np.argmax(self._values(region, scene)[0]))]
+        return pick, pick
+
+
+class TwoActionMaps(LearnedPolicy):
+    """Two arms, each at the highest value of a map of its own; neither knows of the other."""
+
+    variant: ClassVar[str] = "2sam"
+
+    def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
+        first, second = np.argmax(self._values(region, scene), axis=1)
+        return region.points[first], region.points[second]
+
+
+class PairValue(LearnedPolicy):
+    """Both picks at once: the pair of contour points with the highest joint value, the same twice for one arm.
+
+    Not in the paper, whose map knows the second pick only through affordance. Pairs of little affordance are left out:
+    of 244 states, the best of eight tried pairs had less than 0.65 of the best affordance in under 5 %.
+    """
+
+    variant: ClassVar[str] = "pair"
+
+    class Config(LearnedConfig):
+        """Parameters."""
+
+        least_affordance: float = Field(0.65, ge=0, le=1, description="pairs need this share of the best affordance")
+
+    def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
+        points, values = self._all_pairs(region, scene)
+        first, second = np.unravel_index(int(np.argmax(values)), values.shape)
+        return points[first], points[second]
+
+    def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
+        """The lifted contour [px], shape (N, 2), and the value of picking there with the best partner, shape (N,)."""
+        points, values = self._all_pairs(fold_region(fold_line, scene), scene)
+        return points, values.max(axis=1)
+
+    def _all_pairs(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
+        """N points of the contour, shape (N, 2), and the value of every pair of them, symmetric, shape (N, N)."""
+        points = _thinned(region.points)
+        first, second = np.triu_indices(len(points))
+        found = self._pair_values(region, scene, points[first], points[second])
+        scores = affordance(region, points[first], points[second], self.config.gamma)
+        found[scores < self.config.least_affordance * scores.max()] = found.min()
+        values = np.empty((len(points), len(points)))
+        values[first, second] = values[second, first] = found
+        return points, values
+
+
+def _thinned(points: Floats) -> Floats:
+    """At most :data:`CANDIDATES` of the points, evenly spread."""
+    return points[np.linspace(0, len(points) - 1, min(len(points), CANDIDATES)).astype(int)]
+
+
+def _points(frame: Frame, points: Floats) -> Tensor:
+    import torch
+
+    return torch.from_numpy(frame.apply(points).astype(np.float32))
+
+
+def _array(values: Tensor) -> Floats:
+    return values.numpy().astype(float)

@@ -1,0 +1,106 @@
+"""Weights on disk: safetensors with what they were trained from, and hashes that loading checks."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from polyfold.errors import ConfigError
+
+if TYPE_CHECKING:
+    from torch import Tensor
+
+    from .networks import ValueNetwork
+
+__all__ = ["Provenance", "load_weights", "save_weights"]
+
+SCHEMA = "1"
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where weights come from.
+
+    Attributes:
+        config: the training configuration, plain data; ``config["network"]`` is the network's.
+        data: hashes of the data sets they were trained from.
+        mean, deviation: of the labels; the network's values are labels standardised by them.
+    """
+
+    config: Mapping[str, Any]
+    data: tuple[str, ...]
+    mean: float
+    deviation: float
+
+    @property
+    def config_hash(self) -> str:
+        """SHA-256 of the configuration."""
+        return hashlib.sha256(json.dumps(self.config, sort_keys=True).encode()).hexdigest()
+
+
+def save_weights(path: str | Path, network: ValueNetwork, provenance: Provenance) -> None:
+    """Write a network's weights with their provenance, whole or not at all."""
+    from safetensors.torch import save_file
+
+    tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in network.state_dict().items()}
+    metadata = {
+        "schema": SCHEMA,
+        "config": json.dumps(provenance.config, sort_keys=True),
+        "config_hash": provenance.config_hash,
+        "data": json.dumps(provenance.data),
+        "labels": json.dumps([provenance.mean, provenance.deviation]),
+        "weights_hash": _hash(tensors),
+    }
+    part = Path(path).with_suffix(".part")
+    save_file(tensors, part, metadata)
+    part.chmod(0o644)
+    part.replace(path)
+
+
+def load_weights(path: str | Path, *variants: str) -> tuple[ValueNetwork, Provenance]:
+    """Read a network, ready to predict, and where it comes from.
+
+    Args:
+        path: a file of :func:`save_weights`.
+        variants: one of which the network must be; any if none is given.
+
+    Raises:
+        ConfigError: if there is no such file, it is no such file, its hashes do not match, or it is another variant.
+    """
+    from safetensors import SafetensorError, safe_open
+
+    from .networks import NetworkConfig, ValueNetwork
+
+    if not Path(path).exists():
+        raise ConfigError(f"there are no weights {path}; train some with `polyfold train`, or give another path")
+    try:
+        with safe_open(path, "pt") as stream:
+            metadata = stream.metadata() or {}
+            tensors = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118
+    except SafetensorError as error:
+        raise ConfigError(f"{path} can't be read as safetensors ({error}); train or install it again") from error
+    if metadata.get("schema") != SCHEMA:
+        raise ConfigError(f"{path} was not written by `polyfold train`, or by another version; train it again")
+    mean, deviation = json.loads(metadata["labels"])
+    found = Provenance(json.loads(metadata["config"]), tuple(json.loads(metadata["data"])), mean, deviation)
+    if found.config_hash != metadata["config_hash"] or _hash(tensors) != metadata["weights_hash"]:
+        raise ConfigError(
+            f"{path} does not match its own hashes: it is damaged or was changed; train or install it again"
+        )
+    config = NetworkConfig(**found.config["network"])
+    if variants and config.variant not in variants:
+        raise ConfigError(f"{path} holds weights for {config.variant}, not for {' or '.join(variants)}; give others")
+    network = ValueNetwork(config)
+    network.load_state_dict(tensors)
+    return network.eval(), found
+
+
+def _hash(tensors: Mapping[str, Tensor]) -> str:
+    whole = hashlib.sha256()
+    for name in sorted(tensors):
+        whole.update(name.encode() + str(tuple(tensors[name].shape)).encode() + tensors[name].numpy().tobytes())
+    return whole.hexdigest()

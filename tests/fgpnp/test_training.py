@@ -1,0 +1,221 @@
+"""Training: it learns, resumes exactly, refuses what it should, and its weights make policies."""
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from drawn_scenes import SQUARE, TSHIRT, model_of, scene_of
+from few_folds import MIX
+from polyfold_fgpnp import training
+from polyfold_fgpnp.affordance import fold_region
+from polyfold_fgpnp.examples import TRIALS_OF, label, make_examples
+from polyfold_fgpnp.learned import CoupledActionMap, OneActionMap, PairValue, TwoActionMaps, VertexLearned
+from polyfold_fgpnp.networks import NetworkConfig, ValueNetwork
+from polyfold_fgpnp.pairs import pair_geometry
+from polyfold_fgpnp.ranks import rank_correlation
+from polyfold_fgpnp.train import read_config
+from polyfold_fgpnp.training import TrainingConfig, augmented, train
+from polyfold_fgpnp.weights import load_weights
+
+from polyfold import plugins
+from polyfold.cli import main
+from polyfold.errors import ConfigError
+from polyfold.interfaces import Policy
+from polyfold.types import FoldLine
+
+POLICIES = {
+    "csam": CoupledActionMap,
+    "pair": PairValue,
+    "1sam": OneActionMap,
+    "2sam": TwoActionMaps,
+    "vertex-learned": VertexLearned,
+}
+LINES = {
+    "half": (SQUARE, FoldLine((200, 350), (200, 50))),
+    "sleeve": (TSHIRT, FoldLine((135, 180), (130, 85))),
+    "hem": (TSHIRT, FoldLine((280, 205), (120, 205))),
+}
+
+
+def small(folder, variant="csam", **changes):
+    network = NetworkConfig(variant=variant, base=4, levels=3, **changes.pop("network", {}))
+    return TrainingConfig(**{"data": (str(folder),), "network": network, "epochs": 3, "batch": 4, **changes})
+
+
+def metrics(out):
+    return [json.loads(line) for line in (out / "metrics.jsonl").read_text().splitlines()]
+
+
+@pytest.fixture(scope="module")
+def weights(folds_folder, tmp_path_factory):
+    """Weights of every variant, barely trained."""
+    out = tmp_path_factory.mktemp("trained")
+    return {name: train(small(folds_folder, name), out / name, "cpu", progress=False) for name in POLICIES}
+
+
+def test_training_lowers_the_loss(folds_folder, tmp_path):
+    train(small(folds_folder, epochs=30, learning_rate=5e-3), tmp_path, "cpu", progress=False)
+    found = metrics(tmp_path)
+    assert found[-1]["loss"] < 0.7 * found[0]["loss"]
+    assert {"epoch", "loss", "validation_loss", "rank_correlation"} <= found[0].keys()
+
+
+def test_the_camera_frame_trains_too(folds_folder, tmp_path):
+    config = small(folds_folder, network={"frame": "camera"}, reward="contour", scale="linear", epochs=1)
+    network, found = load_weights(train(config, tmp_path, "cpu", progress=False), "csam")
+    assert network.config.frame == "camera"
+    assert found.config["reward"] == "contour"
+
+
+def test_a_training_that_was_killed_ends_in_the_same_weights(folds_folder, tmp_path, monkeypatch, weights):
+    save = training._Run.save
+
+    def save_and_die(run, path, epoch):
+        save(run, path, epoch)
+        if epoch == 2:
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(training._Run, "save", save_and_die)
+        with pytest.raises(KeyboardInterrupt):
+            train(small(folds_folder), tmp_path, "cpu", progress=False)
+    again = train(small(folds_folder), tmp_path, "cpu", progress=False)
+    assert [line["epoch"] for line in metrics(tmp_path)] == [1, 2, 3]
+    whole, resumed = (load_weights(path)[0].state_dict() for path in (weights["csam"], again))
+    assert all(torch.allclose(whole[name].float(), resumed[name].float(), atol=1e-5) for name in whole)
+
+
+def test_a_folder_with_another_training_is_refused(folds_folder, weights):
+    with pytest.raises(ConfigError, match="another configuration"):
+        train(small(folds_folder, seed=9), weights["csam"].parent, "cpu", progress=False)
+
+
+def test_a_collapsed_network_stops_the_training(folds_folder, tmp_path, monkeypatch):
+    monkeypatch.setattr(training, "GUARD_STEPS", 1)
+    with pytest.raises(ConfigError, match="collapsed"):
+        train(small(folds_folder, learning_rate=1e-9), tmp_path, "cpu", progress=False)
+
+
+def test_weights_tell_what_they_were_trained_from(weights, folds):
+    _, found = load_weights(weights["csam"], "csam")
+    assert found.data == (folds.description["hash"],)
+    assert found.config["network"]["variant"] == "csam"
+
+
+def test_weights_that_were_changed_are_refused(weights, tmp_path):
+    damaged = tmp_path / "damaged.safetensors"
+    content = bytearray(weights["csam"].read_bytes())
+    content[-1] ^= 1
+    damaged.write_bytes(content)
+    with pytest.raises(ConfigError, match="hashes"):
+        load_weights(damaged)
+    relabelled = tmp_path / "relabelled.safetensors"
+    relabelled.write_bytes(weights["csam"].read_bytes().replace(b'\\"epochs\\": 3', b'\\"epochs\\": 4'))
+    with pytest.raises(ConfigError, match="hashes"):
+        load_weights(relabelled)
+    with pytest.raises(ConfigError, match="holds weights for csam, not for 1sam"):
+        load_weights(weights["csam"], "1sam")
+    with pytest.raises(ConfigError, match="polyfold train"):
+        load_weights(tmp_path / "none.safetensors")
+    (tmp_path / "text.safetensors").write_text("no weights at all")
+    with pytest.raises(ConfigError, match="safetensors"):
+        load_weights(tmp_path / "text.safetensors")
+
+
+@pytest.mark.parametrize("variant", [*POLICIES, "csam with pair"])
+@pytest.mark.parametrize(("corners", "line"), LINES.values(), ids=LINES)
+def test_learned_policies_pick_on_the_cloth_left_of_the_line(variant, corners, line, weights):
+    cls = POLICIES[variant.split()[0]]
+    policy = cls(cls.Config(weights=str(weights[variant.split()[-1]])))
+    assert isinstance(policy, Policy)
+    scene = scene_of(model_of(corners))
+    action = policy.act(line, scene, np.random.default_rng(0))
+    again = policy.act(line, scene, np.random.default_rng(1))
+    assert (action.picks == again.picks).all()
+    assert line.lifts(action.picks).all()
+    columns, rows = action.picks.astype(int).T
+    assert scene.mask[rows, columns].all()
+    assert action.places == pytest.approx(line.mirror(action.picks), abs=1e-6)
+    assert action.arms == 1 or variant != "1sam"
+    points, values = policy.action_map(line, scene)
+    assert len(points) == len(values) > 20
+    assert np.isfinite(values).all()
+
+
+def test_canonical_maps_are_symmetric_on_a_symmetric_flap(weights):
+    policy = CoupledActionMap(CoupledActionMap.Config(weights=str(weights["csam"])))
+    points, values = policy.action_map(LINES["half"][1], scene_of(model_of(SQUARE)))
+    mirrored = [int(np.argmin(np.hypot(*(points - (x, 400 - y)).T))) for x, y in points]
+    assert rank_correlation(values, values[mirrored]) > 0.95
+
+
+def test_every_learned_policy_is_registered():
+    assert {"csam+caso", "1sam", "2sam", "vertex-learned"} <= set(plugins.names("policies"))
+
+
+def test_labels_keep_the_order_and_the_logarithm_spreads_good_folds():
+    rewards = np.array([-0.5, 0.0, 0.9, 0.97, 1.0])
+    assert (np.diff(label(rewards, "linear")) > 0).all()
+    spread = np.diff(label(rewards, "log"))
+    assert (spread > 0).all()
+    assert spread[2] > spread[0]
+
+
+@pytest.mark.parametrize("frame", ["canonical", "camera"])
+def test_augmented_examples_still_show_the_picks_on_the_contour(folds, frame):
+    examples = make_examples([folds], "csam", frame, "particles", "log").chosen(np.arange(6))
+    turned = augmented(examples, NetworkConfig(frame=frame), np.random.default_rng(2))
+    assert not np.array_equal(turned.images, examples.images)
+    for image, line, points, valid in zip(turned.images, turned.lines, turned.points, turned.valid, strict=True):
+        y, x = np.nonzero(image[0] > 127)
+        for point in points[valid][:, 0]:
+            assert np.hypot(x - point[0], y - point[1]).min() < 3
+        if frame == "camera":
+            fold_line = FoldLine.between(400 * line[:2], 400 * line[2:])
+            assert fold_line.lifts(np.column_stack([x, y])).mean() > 0.99
+
+
+def test_a_network_s_pair_value_ignores_the_order_of_picks():
+    network = ValueNetwork(NetworkConfig(variant="pair", base=4, levels=2)).eval()
+    torch.nn.init.normal_(network.head.exit.weight)
+    maps = network(torch.rand(1, 2, 128, 128), torch.zeros(1, 4))
+    region = fold_region(LINES["half"][1], scene_of(model_of(SQUARE)))
+    first, second = region.points[:50:10], region.points[60:160:20]
+    points = torch.from_numpy(np.stack([first, second], 1)[None].astype(np.float32)) / 4
+    one, other = (torch.from_numpy(pair_geometry(region, *picks))[None] for picks in ((first, second), (second, first)))
+    assert torch.allclose(network.values(maps, points, one), network.values(maps, points.flip(2), other), atol=1e-5)
+    assert network.values(maps, points, one).std() > 0
+
+
+def test_a_variant_without_trials_says_what_to_collect(folds):
+    none = type(folds)(folds.description, {**folds.columns, "recipe": np.full_like(folds["recipe"], 3)})
+    with pytest.raises(ConfigError, match="--mix"):
+        make_examples([none], "1sam", "canonical", "particles", "log")
+    assert set().union(*TRIALS_OF.values()) >= set(MIX)
+
+
+def test_training_from_the_command_line(folds_folder, tmp_path, capsys):
+    config = tmp_path / "csam.toml"
+    config.write_text(f'data = ["{folds_folder}"]\nepochs = 1\n[network]\nbase = 4\nlevels = 2\n')
+    assert main(["train", str(config), "--out", str(tmp_path / "out"), "--device", "cpu"]) == 0
+    assert "weights.safetensors" in capsys.readouterr().out
+    config.write_text('data = ["x"]\nepochs = -1\n')
+    with pytest.raises(ConfigError, match="epochs"):
+        read_config(config)
+
+
+def test_policies_and_verbs_are_listed_without_torch():
+    import subprocess
+    import sys
+
+    code = "import sys; from polyfold import plugins; plugins.component_class('policies', 'csam+caso').Config(); "
+    code += "plugins.component_class('policies', 'pair'); assert 'torch' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True, env=os.environ)
+
+
+@pytest.mark.parametrize("path", sorted((Path(__file__).parents[2] / "experiments/training").glob("*.toml")))
+def test_the_recorded_configurations_are_valid(path):
+    assert read_config(path).data
