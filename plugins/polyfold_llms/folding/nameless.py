@@ -24,9 +24,12 @@ Point = NDArray[np.float64]
 _TOGETHER = 10.0
 """Points nearer than this [px] give a line no direction."""
 
-_LEG = 3.4
-"""Trousers on which one leg lies on the other are at least this many times as long as wide, unless a third is folded
-over; with both legs side by side the bound is half as much."""
+_LEG = 3.5
+"""Trousers on which one leg lies on the other are at least this many times as long as wide at the waist, unless a third
+is folded over; with both legs side by side the bound is half as much."""
+
+_PAIR = 2.5
+"""Trousers with both legs side by side are at most this many times as long as wide at the waist."""
 
 
 def crease_of_outline(fold: Fold, outline: Outline) -> Crease:
@@ -145,11 +148,10 @@ def _band(fold: Fold, outline: Outline) -> Crease:
 def _third_is_folded(outline: Outline, fold: Fold) -> bool:
     """Whether the third opposite to this one has been folded over already, judged by how long trousers usually are."""
     low, high = outline.extent()
-    width, height = high - low
+    ratio = float(high[1] - low[1]) / max(outline.width_at_top(), 1.0)
     if outline.kind != "pants" or fold.part not in ("top", "bottom"):
         return outline.kind in ("square", "rectangle")
-    ratio = height / width
-    return ratio < _LEG / 2 or 0.73 * _LEG < ratio < _LEG
+    return ratio < _LEG / 2 or _PAIR < ratio < _LEG
 
 
 def _across(edge: str, outline: Outline, share: float, where: str) -> Crease:

@@ -23,6 +23,9 @@ _ALIGNED = np.radians(4.0)
 _RIVAL = 0.4
 """Directions with this share of the longest total are as good; the one nearest to upright is taken."""
 
+_CREASE = 0.75
+"""Of two edges that come down from the waist, one shorter than this share of the other is a crease."""
+
 _SAME_END = 0.1
 """Corners within this share of the extent belong to the same border."""
 
@@ -92,6 +95,12 @@ class Outline:
         framed = self.framed
         return framed.min(0), framed.max(0)
 
+    def width_at_top(self) -> float:
+        """Distance between the outermost of the highest corners [px]."""
+        framed = self.framed
+        low, high = framed[:, 1].min(), framed[:, 1].max()
+        return float(np.ptp(framed[framed[:, 1] > high - 0.12 * (high - low), 0]))
+
     def toward(self, edge: str) -> Floats:
         """The image direction in which an edge lies, shape (2,)."""
         return {"left": -self.right, "right": self.right, "top": self.up, "bottom": -self.up}[edge]
@@ -131,7 +140,32 @@ def _right_of(corners: Floats, kind: str) -> Floats:
     chosen = rivals[int(np.argmin(np.round(np.abs(angles[rivals]), 1) - 1e-6 * totals[rivals]))]
     alike = apart[chosen] < _ALIGNED
     turn = angles[chosen] + float(np.average(_quarter(angles[alike] - angles[chosen]), weights=lengths[alike]))
+    if kind == "pants":
+        turn = _by_borders(turn, corners, edges, lengths)
     return np.array([np.cos(turn), np.sin(turn)])
+
+
+def _by_borders(turn: float, corners: Floats, edges: Floats, lengths: Floats) -> float:
+    """The turn [rad] of trousers by the median of what should be level or upright, given a rough one.
+
+    Level are the uppermost and the lowest edge. What comes down from the upper one's ends should be upright on average;
+    where one leg lies on the other, the shorter one is the crease between waist and crotch, and that alone is upright.
+    """
+    up = np.array([np.sin(turn), -np.cos(turn)])
+    off = _quarter(np.arctan2(edges[:, 1], edges[:, 0]) - turn)
+    across = np.abs(edges @ up) < lengths / 2
+    level = corners @ up
+    votes = []
+    for near in (level > level.max() - 0.15 * np.ptp(level), level < level.min() + 0.15 * np.ptp(level)):
+        border = near & np.roll(near, -1) & across
+        if border.any():
+            votes.append(int(np.argmax(np.where(border, lengths, 0.0))))
+    if not votes:
+        return turn
+    sides = [(votes[0] - 1) % len(edges), (votes[0] + 1) % len(edges)]
+    shorter, longer = sorted(sides, key=lambda side: lengths[side])
+    upright = off[shorter] if lengths[shorter] < _CREASE * lengths[longer] else (off[shorter] + off[longer]) / 2
+    return turn + float(np.median([*off[votes], upright]))
 
 
 def _along_hem(corners: Floats, edges: Floats, lengths: Floats) -> Floats:
