@@ -26,6 +26,12 @@ _RIVAL = 0.4
 _CREASE = 0.75
 """Of two edges that come down from the waist, one shorter than this share of the other is a crease."""
 
+_ROUNDED = 0.12
+"""An edge shorter than this share of the longest is a rounded corner."""
+
+_HEM = 0.12
+"""Corners within this share of the height from the lowest belong to a t-shirt's hem."""
+
 _SAME_END = 0.1
 """Corners within this share of the extent belong to the same border."""
 
@@ -162,14 +168,21 @@ def _by_borders(turn: float, corners: Floats, edges: Floats, lengths: Floats) ->
             votes.append(int(np.argmax(np.where(border, lengths, 0.0))))
     if not votes:
         return turn
-    sides = [(votes[0] - 1) % len(edges), (votes[0] + 1) % len(edges)]
+    sides = [_next_side(votes[0], step, lengths) for step in (-1, 1)]
     shorter, longer = sorted(sides, key=lambda side: lengths[side])
     upright = off[shorter] if lengths[shorter] < _CREASE * lengths[longer] else (off[shorter] + off[longer]) / 2
     return turn + float(np.median([*off[votes], upright]))
 
 
+def _next_side(edge: int, step: int, lengths: Floats) -> int:
+    """The next edge around the outline that is no rounded corner."""
+    count = len(lengths)
+    following = [(edge + step * i) % count for i in range(1, count)]
+    return next((index for index in following if lengths[index] > _ROUNDED * lengths.max()), following[0])
+
+
 def _along_hem(corners: Floats, edges: Floats, lengths: Floats) -> Floats:
-    """The direction of the longest edge in the lower half that runs rather across than up."""
+    """From end to end of the hem, which sags: the lowest corners by the longest lower edge that runs across."""
     middles = corners + edges / 2
     low = middles[:, 1] > (corners[:, 1].min() + corners[:, 1].max()) / 2
     across = np.abs(edges[:, 0]) > np.abs(edges[:, 1])
@@ -177,7 +190,12 @@ def _along_hem(corners: Floats, edges: Floats, lengths: Floats) -> Floats:
         raise NotUnderstoodError("I see no hem in the outline")
     hem = int(np.argmax(np.where(low & across, lengths, 0.0)))
     along = edges[hem] / lengths[hem]
-    return along if along[0] > 0 else -along
+    along = along if along[0] > 0 else -along
+    height = corners @ np.array([along[1], -along[0]])
+    lowest = corners[height < height.min() + _HEM * float(np.ptp(height))]
+    across = lowest @ along
+    along = lowest[int(np.argmax(across))] - lowest[int(np.argmin(across))]
+    return along / np.hypot(*along)
 
 
 def _quarter(angle: Floats) -> Floats:

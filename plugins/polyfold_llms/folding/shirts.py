@@ -23,7 +23,8 @@ _ARMHOLE = 0.9
 """Half the width between the armholes' upper ends as a share of that between the armpits."""
 
 _NEAR = 0.12
-"""A corner this near to where the shoulder should be, as a share of the hem, is the shoulder."""
+"""A corner this near to where the shoulder should be, as a share of the hem, belongs to it: the shoulder is taken to
+lie halfway between the two, since the corner may be one of the sleeve's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,5 +153,5 @@ def _shoulder(upper: Floats, sign: float, middle: float, half_width: float, hem:
     if len(inner):
         distance = np.hypot(*(inner - expected).T)
         if distance.min() < _NEAR * hem:
-            return inner[int(np.argmin(distance))]
+            return (inner[int(np.argmin(distance))] + expected) / 2
     return expected
