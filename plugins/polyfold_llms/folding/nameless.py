@@ -133,16 +133,15 @@ def _middle(fold: Fold, outline: Outline) -> Crease:
 
 
 def _band(fold: Fold, outline: Outline) -> Crease:
-    name = "third" if fold.share > 0.3 else "quarter"
-    missing = _third_is_folded(outline, fold) if name == "third" else False
-    if missing:
+    third = abs(fold.share - 1 / 3) < 0.01
+    if third and _third_is_folded(outline, fold):
         return _across(
             fold.part,
             outline,
             0.5,
             "halfway across what I see: it is too short for the whole garment, so the opposite third lies folded over",
         )
-    return _across(fold.part, outline, fold.share, f"one {name} of the way across what I see, which I take for whole")
+    return _across(fold.part, outline, fold.share, f"{fold.share:.0%} of the way across what I see, which I take for whole")
 
 
 def _third_is_folded(outline: Outline, fold: Fold) -> bool:
