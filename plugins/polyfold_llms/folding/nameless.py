@@ -135,17 +135,16 @@ def _middle(fold: Fold, outline: Outline) -> Crease:
 def _band(fold: Fold, outline: Outline) -> Crease:
     third = abs(fold.share - 1 / 3) < 0.01
     if third and _third_is_folded(outline, fold):
+        why = "it is too short for whole trousers" if outline.kind == "pants" else "the outline alone can't tell"
         return _across(
-            fold.part,
-            outline,
-            0.5,
-            "halfway across what I see: it is too short for the whole garment, so the opposite third lies folded over",
+            fold.part, outline, 0.5, f"halfway across what I see: most likely the opposite third lies folded over; {why}"
         )
-    return _across(fold.part, outline, fold.share, f"{fold.share:.0%} of the way across what I see, which I take for whole")
+    where = f"{fold.share:.0%} of the way across what I see, which I take for whole"
+    return _across(fold.part, outline, fold.share, where)
 
 
 def _third_is_folded(outline: Outline, fold: Fold) -> bool:
-    """Whether the third opposite to this one has been folded over already, judged by how long trousers usually are."""
+    """Whether the opposite third has most likely been folded over: trousers' length tells, else thirds come in pairs."""
     low, high = outline.extent()
     ratio = float(high[1] - low[1]) / max(outline.width_at_top(), 1.0)
     if outline.kind != "pants" or fold.part not in ("top", "bottom"):
