@@ -137,14 +137,14 @@ def _band(fold: Fold, outline: Outline) -> Crease:
     if third and _third_is_folded(outline, fold):
         why = "it is too short for whole trousers" if outline.kind == "pants" else "the outline alone can't tell"
         return _across(
-            fold.part, outline, 0.5, f"halfway across what I see: most likely the opposite third lies folded over; {why}"
+            fold.part, outline, 0.5, f"halfway across what I see: the opposite third most likely lies on it; {why}"
         )
     where = f"{fold.share:.0%} of the way across what I see, which I take for whole"
     return _across(fold.part, outline, fold.share, where)
 
 
 def _third_is_folded(outline: Outline, fold: Fold) -> bool:
-    """Whether the opposite third has most likely been folded over: trousers' length tells, else thirds come in pairs."""
+    """Whether the opposite third most likely lies on top: trousers tell by their length, else thirds come in pairs."""
     low, high = outline.extent()
     ratio = float(high[1] - low[1]) / max(outline.width_at_top(), 1.0)
     if outline.kind != "pants" or fold.part not in ("top", "bottom"):
