@@ -94,8 +94,11 @@ class PolyFoldAgent:
         subgoal = self._pending[0]
         plan = self._planner.plan(subgoal, scene, self._goal.conversation)
         planned = time.perf_counter()
+        if plan is None or getattr(self._planner, "decomposes", True):
+            self._pending.pop(0)
+        if plan is None:
+            return None
         action, line = self._act(plan, scene)
-        self._pending.pop(0)
         self._attempt = Attempt(observation, mask, line, action)
         seconds = {"grounding": grounded - clock, "language": planned - grounded, "policy": _since(planned)}
         return Decision(action, subgoal, line, scene, seconds)

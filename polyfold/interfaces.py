@@ -157,13 +157,21 @@ class Conversation(Protocol):
 
 @runtime_checkable
 class Planner(Protocol):
-    """Splits an instruction into subgoals and turns each into a fold line (or, for direct planners, an action)."""
+    """Splits an instruction into subgoals and turns each into a fold line (or, for direct planners, an action).
+
+    A planner that doesn't split instructions has a class attribute ``decomposes = False``: it returns the instruction
+    as its only subgoal and is asked to plan it again and again, each time on the scene as seen then, until it returns
+    None.
+    """
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Decompose an instruction. Raises RefusedError with the reason when it can't or must not be done."""
 
-    def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine | Action:
-        """Plan one step on the scene as seen now. Raises PlanError when no valid answer came after the repairs."""
+    def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine | Action | None:
+        """Plan one step on the scene as seen now; None when nothing is left to do.
+
+        Raises PlanError when no valid answer came after the repairs.
+        """
 
 
 @runtime_checkable

@@ -18,12 +18,15 @@ A prompt file is ``<folder>/<role>/<version>.md``. Its YAML front matter names w
 
 The body is Jinja2, rendered in a sandbox in which an unknown name is an error. Inputs enter as JSON only: a ``text``
 becomes a quoted string, a ``json`` a decoded and re-encoded object, so that no input can pose as an instruction's
-frame. Examples are JSONL, one ``{"inputs": {...}, "answer": "..."}`` a line, rendered by the same user template.
+frame. An ``image`` is not named in the body: it follows the user's text as a PNG. Examples are JSONL, one
+``{"inputs": {...}, "answer": "..."}`` a line, rendered by the same user template, without images.
 """
 
 from __future__ import annotations
 
+import base64
 import hashlib
+import io
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -62,7 +65,7 @@ class Prompt:
 
     Attributes:
         id, version: what it is; both stand in the file's path too.
-        inputs: input name -> ``text`` or ``json``.
+        inputs: input name -> ``text``, ``json`` or ``image``.
         output: key of the answer's JSON object.
         params: parameters for the language model, such as the temperature.
         max_attempts: how many answers the repair loop may ask for.
@@ -92,29 +95,41 @@ class Prompt:
         """Chat messages: the system's, the examples as exchanges, then the user's.
 
         Args:
-            values: one for each of ``inputs``: a string for ``text``; a JSON text or plain data for ``json``.
+            values: one for each of ``inputs``: a string for ``text``; a JSON text or plain data for ``json``; colours,
+                uint8, shape (H, W, 3), for ``image``.
 
         Raises:
             ConfigError: for a missing, unknown, overlong or badly named input.
         """
+        if set(values) != set(self.inputs):
+            raise ConfigError(
+                f"prompt {self.name} takes the inputs {sorted(self.inputs)}, got {sorted(values)}; give exactly those"
+            )
         messages: list[Message] = []
         for role, source in self.sections:
             if role == "user":
                 for example in self.examples:
                     messages.append({"role": "user", "content": self._fill(source, example.inputs)})
                     messages.append({"role": "assistant", "content": example.answer})
-            messages.append({"role": role, "content": self._fill(source, values)})
+            text = self._fill(source, values)
+            images = [_image_part(values[name]) for name in self.images] if role == "user" else []
+            content = [{"type": "text", "text": text}, *images] if images else text
+            messages.append({"role": role, "content": content})
         return messages
+
+    @property
+    def images(self) -> tuple[str, ...]:
+        """Names of the inputs that are images."""
+        return tuple(name for name, kind in self.inputs.items() if kind == "image")
 
     def _fill(self, source: str, values: Mapping[str, Any]) -> str:
         from jinja2 import StrictUndefined, TemplateError
         from jinja2.sandbox import SandboxedEnvironment
 
-        if set(values) != set(self.inputs):
-            raise ConfigError(
-                f"prompt {self.name} takes the inputs {sorted(self.inputs)}, got {sorted(values)}; give exactly those"
-            )
-        quoted = {name: _quoted(name, values[name], self.inputs[name]) for name in self.inputs}
+        written = [name for name in self.inputs if name not in self.images]
+        if missing := sorted(set(written) - set(values)):
+            raise ConfigError(f"an example of prompt {self.name} lacks the inputs {missing}; add them")
+        quoted = {name: _quoted(name, values[name], self.inputs[name]) for name in written}
         environment = SandboxedEnvironment(undefined=StrictUndefined, keep_trailing_newline=False, autoescape=False)
         try:
             return environment.from_string(source).render(**quoted).strip()
@@ -215,8 +230,8 @@ def _check_front(front: Any, path: Path) -> None:
     if (front["id"], front["version"]) != (path.parent.name, path.stem):
         raise ConfigError(f"prompt {path} calls itself {front['id']}@{front['version']}; make name and path agree")
     inputs = front["inputs"]
-    if not isinstance(inputs, dict) or not set(inputs.values()) <= {"text", "json"}:
-        raise ConfigError(f"prompt {path}: inputs must map each name to 'text' or 'json'; correct them")
+    if not isinstance(inputs, dict) or not set(inputs.values()) <= {"text", "json", "image"}:
+        raise ConfigError(f"prompt {path}: inputs must map each name to 'text', 'json' or 'image'; correct them")
     attempts = front.get("max_attempts", 3)
     if not isinstance(attempts, int) or not 1 <= attempts <= 10:
         raise ConfigError(f"prompt {path}: max_attempts must be a whole number from 1 to 10, got {attempts!r}")
@@ -240,6 +255,16 @@ def _examples(path: Path) -> tuple[Example, ...]:
         raise ConfigError(
             f'{path} does not hold usable examples ({error!r}); write one {{"inputs": {{...}}, "answer": "..."}} a line'
         ) from error
+
+
+def _image_part(picture: Any) -> dict[str, Any]:
+    """A picture, uint8, shape (H, W, 3), as a content part that providers of chat models take."""
+    from PIL import Image
+
+    buffer = io.BytesIO()
+    Image.fromarray(picture).save(buffer, "PNG")
+    data = base64.b64encode(buffer.getvalue()).decode("ascii")
+    return {"type": "image_url", "image_url": {"url": f"data:image/png;base64,{data}"}}
 
 
 def _quoted(name: str, value: Any, kind: str) -> str:

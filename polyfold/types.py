@@ -185,6 +185,9 @@ class Scene:
         text: what a language model is shown: strict JSON.
         residual: Chamfer distance between model and contour [px]; NaN without a model.
         notes: things the caller should know (a displaced garment, an ambiguous silhouette).
+        picture: what a vision model is shown beside the text: colours, uint8, shape (H, W, 3); None for none.
+        shown: what text and picture hold, of ``polygon``, ``keypoints``, ``image``; it decides which prompt explains
+            them to the language model (``fold_line/keypoints-image-v1.md``).
     """
 
     kind: str
@@ -195,6 +198,8 @@ class Scene:
     text: str
     residual: float = float("nan")
     notes: tuple[str, ...] = ()
+    picture: NDArray[np.uint8] | None = None
+    shown: tuple[str, ...] = ("polygon",)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from polyfold.errors import PlanError
 from polyfold.geometry import signed_distance
 from polyfold.interfaces import Conversation, Reply
 from polyfold.polygon import Template
-from polyfold.prompts import Prompt, load_prompt
+from polyfold.prompts import load_prompt
 from polyfold.types import FoldLine, Scene, Subgoal
-from polyfold_planning.grammar import check_subgoal
+from polyfold_planning.decomposition import SubgoalsConfig, split
 from polyfold_planning.repair import ask_until_valid
-from polyfold_planning.replies import answer_object, fold_line_in, subgoals_in
+from polyfold_planning.replies import answer_object, fold_line_in
+from polyfold_planning.scenes import prompt_about, shown_values
 
 __all__ = ["HierarchicalPlanner"]
 
@@ -29,17 +28,10 @@ MIN_SHARE = 0.005
 class HierarchicalPlanner:
     """Subgoal decomposition, then one fold line per subgoal, both by prompts and with a repair loop."""
 
-    class Config(BaseModel):
+    class Config(SubgoalsConfig):
         """Prompt versions and limits."""
 
-        model_config = ConfigDict(frozen=True, extra="forbid")
-
-        subgoals_prompt: str = Field("v1", description="version of the prompt that splits instructions")
         fold_line_prompt: str = Field("v1", description="version of the prompt that finds fold lines")
-        max_attempts: int | None = Field(None, ge=1, le=10, description="answers asked for; None: as the prompt says")
-        max_subgoals: int = Field(10, ge=1, le=30, description="longest plan accepted")
-        check_grammar: bool = Field(True, description="hold subgoals to the anchored form and known parts")
-        params: dict[str, Any] = Field(default_factory=dict, description="parameters for the model, over the prompt's")
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
@@ -47,19 +39,13 @@ class HierarchicalPlanner:
     @property
     def prompts(self) -> dict[str, str]:
         """Prompt ``id@version`` -> sha256, for logs."""
-        return {prompt.name: prompt.sha256 for prompt in (self._prompt("subgoals"), self._prompt("fold_line"))}
+        roles = {"subgoals": self._config.subgoals_prompt, "fold_line": self._config.fold_line_prompt}
+        prompts = [load_prompt(role, version) for role, version in roles.items()]
+        return {prompt.name: prompt.sha256 for prompt in prompts}
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""
-
-        def read(reply: Reply) -> list[Subgoal]:
-            texts = subgoals_in(answer_object(reply), self._config.max_subgoals)
-            if self._config.check_grammar:
-                for text in texts:
-                    check_subgoal(text, template)
-            return [Subgoal(text) for text in texts]
-
-        return self._ask("subgoals", {"template": template.to_text(), "instruction": instruction}, read, conversation)
+        return split(instruction, template, conversation, self._config)
 
     def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine:
         """Find the fold line of a subgoal on the scene as seen now. Raises PlanError if no valid answer came."""
@@ -69,15 +55,10 @@ class HierarchicalPlanner:
             check_fold_line(line, scene)
             return line
 
-        return self._ask("fold_line", {"model": scene.text, "subgoal": subgoal.text}, read, conversation)
-
-    def _ask(self, role: str, values: dict[str, Any], read: Any, conversation: Conversation) -> Any:
-        prompt = self._prompt(role)
+        prompt = prompt_about(scene, "fold_line", self._config.fold_line_prompt)
+        values = shown_values(scene, prompt, subgoal=subgoal.text)
         attempts = self._config.max_attempts or prompt.max_attempts
         return ask_until_valid(prompt, values, read, conversation, self._config.params, attempts)
-
-    def _prompt(self, role: str) -> Prompt:
-        return load_prompt(role, getattr(self._config, f"{role}_prompt"))
 
 
 def check_fold_line(line: FoldLine, scene: Scene) -> None:

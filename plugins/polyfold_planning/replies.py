@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from polyfold.errors import PlanError, RefusedError
 from polyfold.interfaces import Reply
-from polyfold.types import FoldLine
+from polyfold.types import Action, FoldLine
 
-__all__ = ["answer_object", "fold_line_in", "subgoals_in"]
+__all__ = ["action_in", "answer_object", "fold_line_in", "says_done", "subgoals_in"]
 
 _FENCE = re.compile(r"```[ \t]*(?:json|JSON)?[ \t]*\n(.*?)```", re.DOTALL)
 MAX_REPLY = 100_000
@@ -82,6 +82,33 @@ def fold_line_in(content: Mapping[str, Any]) -> FoldLine:
             raise PlanError(f"the JSON must have the form {form}; {end!r} is missing")
         points.append(tuple(_coordinate(point.get(axis), end, axis) for axis in ("x", "y")))
     return FoldLine(points[0], points[1])
+
+
+def action_in(content: Mapping[str, Any], arms: Sequence[int]) -> Action:
+    """Picks and places [px]. Raises PlanError if they have another form or number, or a coordinate is not finite.
+
+    Args:
+        content: the answer's object.
+        arms: how many picks are allowed.
+    """
+    counts = " or ".join(str(count) for count in arms)
+    form = '{"picks": [{"x": 0, "y": 0}], "places": [{"x": 0, "y": 0}]}'
+    lists = {}
+    for what in ("picks", "places"):
+        points = content.get(what)
+        if not isinstance(points, list) or not all(isinstance(point, Mapping) for point in points):
+            raise PlanError(f"the JSON must have the form {form}, with {counts} of each; {what!r} is missing or wrong")
+        if len(points) not in arms:
+            raise PlanError(f"{len(points)} {what} were given; give {counts}")
+        lists[what] = [[_coordinate(point.get(axis), what, axis) for axis in ("x", "y")] for point in points]
+    if len(lists["picks"]) != len(lists["places"]):
+        raise PlanError("every pick needs one place; give as many places as picks, in the same order")
+    return Action(lists["picks"], lists["places"])
+
+
+def says_done(content: Mapping[str, Any]) -> bool:
+    """Whether the answer is that nothing is left to do: ``{"done": true}``."""
+    return content.get("done") is True
 
 
 def _coordinate(value: Any, end: str, axis: str) -> float:

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import json
 import os
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 from polyfold_llms.folding.creases import crease_of
 from polyfold_llms.folding.meaning import understand
+from polyfold_llms.folding.nameless import crease_of_outline
+from polyfold_llms.folding.outlines import Outline, family_of, is_nameless
 from polyfold_llms.folding.parts import Garment
 from polyfold_llms.folding.shape import Shape
 from polyfold_planning.grammar import check_subgoal
-from polyfold_planning.replies import answer_object, fold_line_in, subgoals_in
+from polyfold_planning.replies import action_in, answer_object, fold_line_in, subgoals_in
 
 from polyfold.errors import ConfigError, RefusedError
 from polyfold.interfaces import Reply
 from polyfold.plugins import create
 from polyfold.prompts import load_prompt, prompt_names
-from polyfold.types import FoldLine
+from polyfold.types import Camera, FoldLine
 
 FRONT = "---\nid: {id}\nversion: v1\ninputs: {{word: text, data: json}}\noutput: fold_line\n---\n"
 BODY = "{# role: system #}\nBe brief.\n{# role: user #}\nData: {{ data }}\nWord: {{ word }}\n"
@@ -146,3 +151,59 @@ def test_fold_line_examples_parse_and_agree_with_the_geometry(example):
         assert 0 <= x < model["image"]["width"]
         assert 0 <= y < model["image"]["height"]
     assert isinstance(line, FoldLine)
+
+
+def test_an_image_follows_the_text_and_examples_have_none(tmp_path):
+    front = FRONT.format(id="mine").replace("data: json", "data: json, look: image")
+    folder = write(tmp_path, front.replace("output:", "examples: some.jsonl\noutput:") + BODY).parent
+    (folder / "some.jsonl").write_text('{"inputs": {"word": "a", "data": {}}, "answer": "b"}\n')
+    picture = np.arange(48, dtype=np.uint8).reshape(4, 4, 3)
+    *_, example, answer, question = load_prompt("mine", folders=[tmp_path]).render(word="c", data={}, look=picture)
+    assert (example["content"], answer["content"]) == ('Data: {}\nWord: "a"', "b")
+    text, image = question["content"]
+    assert text == {"type": "text", "text": 'Data: {}\nWord: "c"'}
+    head, _, data = image["image_url"]["url"].partition(",")
+    assert head == "data:image/png;base64"
+    assert (np.asarray(Image.open(io.BytesIO(base64.b64decode(data)))) == picture).all()
+
+
+def shown_crease(inputs):
+    """The ideal fold line for the inputs of an example, by polygon or keypoints."""
+    model = inputs["model"]
+    if is_nameless(model):
+        (fold,) = understand(inputs["subgoal"], family_of(model["garment"])).folds
+        return crease_of_outline(fold, Outline.from_text(model)).line
+    garment = Garment.from_vertices(model["garment"], model.get("vertices", model.get("keypoints")))
+    (fold,) = understand(inputs["subgoal"], garment).folds
+    return crease_of(fold, Shape.from_text(model)).line
+
+
+@pytest.mark.parametrize("example", load_prompt("fold_line", "keypoints-v1").examples)
+def test_fold_line_examples_with_keypoints_agree_with_the_geometry(example):
+    line = fold_line_in(answer_object(Reply(example.answer)))
+    points = example.inputs["model"]["keypoints"]
+    points = np.array(list(points.values()) if isinstance(points, dict) else points, float)
+    ideal = shown_crease(example.inputs)
+    lifted = ideal.distance(points) > 3
+    assert lifted.any()
+    assert np.hypot(*(line.mirror(points) - ideal.mirror(points))[lifted].T).max() < 8
+
+
+@pytest.mark.parametrize("version", ["v1", "keypoints-v1"])
+@pytest.mark.parametrize(("role", "arms"), [("direct_1arm", (1,)), ("direct_2arm", (1, 2))])
+def test_examples_of_picks_and_places_agree_with_the_geometry(role, arms, version):
+    examples = load_prompt(role, version).examples
+    assert len(examples) >= 2
+    for example in examples:
+        action = action_in(answer_object(Reply(example.answer)), arms)
+        ideal = shown_crease(example.inputs)
+        assert ideal.lifts(action.picks).all()
+        assert np.hypot(*(ideal.mirror(action.picks) - action.places).T).max() < 8
+        action.check_inside(Camera())
+
+
+def test_every_prompt_can_be_loaded_and_says_what_it_wants():
+    for name in prompt_names():
+        prompt = load_prompt(*name.split("@"))
+        wanted = f'"{prompt.output}"'
+        assert any(wanted in source for role, source in prompt.sections if role == "system"), name

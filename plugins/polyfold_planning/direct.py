@@ -1,0 +1,64 @@
+"""Planners without fold lines (paper, Table IV b): subgoals, then picks and places from the language model itself."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from polyfold.interfaces import Conversation, Reply
+from polyfold.polygon import Template
+from polyfold.types import Action, Scene, Subgoal
+from polyfold_planning.decomposition import SubgoalsConfig, split
+from polyfold_planning.motions import check_action
+from polyfold_planning.repair import ask_until_valid
+from polyfold_planning.replies import action_in, answer_object
+from polyfold_planning.scenes import prompt_about, shown_values
+
+__all__ = ["DirectOneArm", "DirectTwoArms"]
+
+
+class _Direct:
+    """Decomposes as ``hierarchical`` does, then asks for picks and places on what the scene shows."""
+
+    role: ClassVar[str]
+    arms: ClassVar[tuple[int, ...]]
+
+    class Config(SubgoalsConfig):
+        """Prompt versions and limits."""
+
+        motion_prompt: str = Field("v1", description="version of the prompt that asks for picks and places")
+
+    def __init__(self, config: Config | None = None) -> None:
+        self._config = config or self.Config()
+
+    def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
+        """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""
+        return split(instruction, template, conversation, self._config)
+
+    def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> Action:
+        """Picks and places for a subgoal on the scene as seen now. Raises PlanError if no valid answer came."""
+
+        def read(reply: Reply) -> Action:
+            action = action_in(answer_object(reply), self.arms)
+            check_action(action, scene)
+            return action
+
+        prompt = prompt_about(scene, self.role, self._config.motion_prompt)
+        values = shown_values(scene, prompt, subgoal=subgoal.text)
+        attempts = self._config.max_attempts or prompt.max_attempts
+        return ask_until_valid(prompt, values, read, conversation, self._config.params, attempts)
+
+
+class DirectOneArm(_Direct):
+    """Subgoals, then one pick and place each."""
+
+    role = "direct_1arm"
+    arms = (1,)
+
+
+class DirectTwoArms(_Direct):
+    """Subgoals, then picks and places of two arms each; one arm where a single corner moves."""
+
+    role = "direct_2arm"
+    arms = (1, 2)
