@@ -106,6 +106,10 @@ def _no_more(wish: Wish, match: re.Match[str]) -> None:
     wish.bounds.append(Bound(QUANTITY.get(match.groupdict().get("dim") or "", "area"), high=share * 1.15))
 
 
+def _share_halved(wish: Wish, match: re.Match[str]) -> None:
+    wish.bounds.append(about(QUANTITY[match.group("dim")], 1 / 2))
+
+
 def _doubled(wish: Wish, match: re.Match[str]) -> None:
     wish.bounds.append(about("area", 1 / 2))
 
@@ -183,6 +187,12 @@ def _nothing(wish: Wish, match: re.Match[str]) -> None:
 
 
 SIZE_IDIOMS: list[tuple[str, Reader]] = [
+    (rf"^(?:just |only |to |by |about )*{FRACTION}(?: size| the size)?(?= ?[.!?]|$| please)", _share),
+    (rf"(?:cut|cutting|bring|brought|chop|divide|slash)(?: down)? {OF}{DIM} (?:down )?(?:in|by|into) (?:half|two)",
+     _share_halved),
+    (r"not (?:take up|takes up|fill|cover|occupy|need|use|hog|clutter)(?: up)? (?:(?:the|an|so|my|our|your|as"
+     r"|too|that|a) )*"
+     r"(?:entire|whole|full|all of|all|much|half)(?: of)?(?: (?:the|my|our))?(?: \w+)?", _not_so_big),
     (rf"{MUCH}{SLIGHT}(?P<less>{'|'.join(LESSER)})(?: than (?:before|now|it (?:is|was)|they (?:are|were)|that|this)"
      r"(?: now)?)?", _less),
     (rf"{MUCH}{SLIGHT}less (?P<dim>wide|broad|high|tall|long)", _not_so),
@@ -215,7 +225,8 @@ SIZE_IDIOMS: list[tuple[str, Reader]] = [
      rf"(?:more|larger|bigger|wider|longer|higher|taller) than {A}{FRACTION}(?: of)?(?: ?{OF}{DIM})?"
      rf"(?: ?{OF}{CLOTH})?", _no_more),
     (rf"(?:cover|covers|covering|fill|fills|take up|takes up|occupy|occupies|use|uses)(?: only| just| about)* "
-     rf"{A}{FRACTION}(?: of)?(?: (?:the|my|our|its|a) (?:table|bed|shelf|drawer|counter|space|room|place"
+     rf"{A}{FRACTION}(?: of)?(?: (?:the|my|our|its|a) (?:table|bed|tray|sofa|couch|bench|window|box|basket"
+     rf"|mattress|shelf|drawer|counter|space|room|place"
      rf"|worktop|desk)"
      r"(?: top| it (?:does|has|takes)(?: now)?)?)?", _share),
     (rf"{A}{FRACTION} of (?:its|their|the) (?:{OF})?{DIM}(?: {CLOTH})?", _share),
@@ -243,6 +254,11 @@ SIZE_IDIOMS: list[tuple[str, Reader]] = [
 ]  # fmt: skip
 
 PART_IDIOMS: list[tuple[str, Reader]] = [
+    (r"(?:the |its |both |those |these |my |no )*(?:(?P<side>left|right) )?(?:sleeves?|arms?) (?:do|does|will"
+     r"|would|may|can"
+     r"|should|must) (?:not |no longer )(?:be )?(?:show|shown|showing|seen|visible|stick out|appear|hang out"
+     r"|poke out|peek out)"
+     r"(?: out)?", _hides),
     (r"(?:the |its |their |both )*(?:trouser |pant )?legs? (?:should |must |to |be |are |is |have |need |a bit "
      r"|a lot |much |"
      r"way |far |too |half (?:as )?)*(?:shorter|shortened|short|too long|long)", _shortened),
@@ -289,6 +305,11 @@ PART_IDIOMS: list[tuple[str, Reader]] = [
 ]  # fmt: skip
 
 MANNERS: list[tuple[str, Reader]] = [
+    (r"(?:looks?|looking|lies?|lying|sits?|fits?|stays?|rests?) (?:\w+ )?(?:on|onto) (?:the|my|our|a|his"
+     r"|her)", _nothing),
+    (r"fancy|elegant(?:ly)?|pretty|prettily|beautiful(?:ly)?|decorative(?:ly)?|festive(?:ly)?|smart(?:ly)?|posh"
+     r"|classy|"
+     r"stylish(?:ly)?|professional(?:ly)?|crisp(?:ly)?|like new|well", _tidy),
     (r"(?:like |the way |as |just like )?(?:marie )?kondo(?: (?:would|does|do|did|style|method|way|folds?|it|them))*|"
      r"kon ?mari(?: (?:style|method|way|fold|it))*|(?:file|filed|filing) (?:fold(?:ed)? )?(?:it|them)?(?: ?upright)?|"
      r"(?:stands?|standing|stood|stand) (?:it |them )?(?:up|upright|on (?:its|their) own|alone)(?: (?:in"
