@@ -187,7 +187,7 @@ def _nothing(wish: Wish, match: re.Match[str]) -> None:
 
 
 SIZE_IDIOMS: list[tuple[str, Reader]] = [
-    (rf"^(?:just |only |to |by |about )*{FRACTION}(?: size| the size)?(?= ?[.!?]|$| please)", _share),
+    (rf"^(?:just |only |to |by |about )*{FRACTION}(?: size| the size)?(?=(?:,? please)?[ .!?]*$)", _share),
     (rf"(?:cut|cutting|bring|brought|chop|divide|slash)(?: down)? {OF}{DIM} (?:down )?(?:in|by|into) (?:half|two)",
      _share_halved),
     (r"not (?:take up|takes up|fill|cover|occupy|need|use|hog|clutter)(?: up)? (?:(?:the|an|so|my|our|your|as"
