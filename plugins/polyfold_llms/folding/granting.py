@@ -71,7 +71,7 @@ def _demands(wish: Wish, garment: Garment) -> Iterator[Demand]:
         yield f"pointing to the {wish.points}", lambda outcome: outcome.points == {wish.points}
     for purpose in dict.fromkeys(wish.purposes):
         yield f"fit for a {purpose}", lambda outcome, purpose=purpose: _suits(outcome, purpose, wish, garment)
-    if (wish.small or wish.least) and not wish.sized:
+    if (wish.small or wish.least or wish.merely_tidy) and not (wish.sized or wish.looks):
         yield "small", lambda outcome: outcome.area <= _small(wish, garment)
     if wish.steps is not None:
         least, most = wish.steps
@@ -140,6 +140,7 @@ _LOOKS: dict[str, Callable[[Outcome], bool]] = {
     "sleeveless": lambda outcome: _actions(outcome) == ["sleeve", "sleeve"],
     "oneleg": lambda outcome: outcome.worn and _moved_edges(outcome) in (["left"], ["right"]),
     "onesleeve": lambda outcome: _actions(outcome) == ["sleeve"],
+    "dogear": lambda outcome: len(_ears(outcome)) == len(outcome.folds) == 1,
     "mirrored": lambda outcome: _moved_edges(outcome) in (["left"], ["right"]),
     "hexagon": lambda outcome: len(outcome.folds) == 2 and _opposite_ears(outcome),
     "threequarter": lambda outcome: _actions(outcome) == ["band"],

@@ -142,5 +142,14 @@ def plainest(text: str) -> str:
     text = re.sub(r"'(?:s|ve|ll|d|re|m)\b", "", text).replace("s' ", "s ")
     for said, word in (("1/2", "half"), ("50 ?%", "half"), ("1/3", "third"), ("1/4", "quarter"), ("25 ?%", "quarter")):
         text = re.sub(rf"(?<![\w/]){said}(?!\w)", word, text)
+    for said, word in (
+        ("1/8", "eighth"),
+        ("1/6", "sixth"),
+        ("1/9", "ninth"),
+        ("2/3", "two thirds"),
+        ("3/4", "three quarters"),
+    ):
+        text = re.sub(rf"(?<![\w/]){said}(?!\w)", word, text)
+    text = re.sub(r"(?<=\d) ?(?:%|per ?cent)", " percent", text)
     text = re.sub(r"\bt-?shirt", "tshirt", text)
     return re.sub(r"\s+", " ", re.sub(r"[^a-z0-9',.;:!?]+", " ", text)).strip()

@@ -32,6 +32,7 @@ class Wish:
         points: the side to which it should point.
         steps: (least, most) number of folds.
         small: it should be small.
+        tidy: it should be neat, which is small if nothing else is said.
         least: it should be as small as can be.
         words: what the wish was read from, as said.
         passed: unknown words in adjuncts, which tell nothing about the end.
@@ -47,6 +48,7 @@ class Wish:
     points: str = ""
     steps: tuple[int, int] | None = None
     small: bool = False
+    tidy: bool = False
     least: bool = False
     words: list[str] = field(default_factory=list)
     passed: list[str] = field(default_factory=list)
@@ -56,8 +58,17 @@ class Wish:
         """Whether it wants anything of the end; a number of folds alone does not."""
         return bool(
             self.bounds or self.looks or self.shapes or self.purposes or self.hidden or self.lies or self.points
-            or self.small or self.least
+            or self.small or self.tidy or self.least
         )  # fmt: skip
+
+    @property
+    def merely_tidy(self) -> bool:
+        """Whether it wants the cloth neat and nothing else."""
+        return (
+            self.tidy
+            and self.steps is None
+            and not (self.bounds or self.looks or self.shapes or self.purposes or self.hidden or self.lies)
+        )
 
     @property
     def sized(self) -> bool:

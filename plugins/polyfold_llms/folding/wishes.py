@@ -13,6 +13,7 @@ from importlib.resources import files
 from polyfold_llms.folding.lexicon import fillers, phrases
 from polyfold_llms.folding.spelling import NUMBERS, plainest
 from polyfold_llms.folding.wish import Wish
+from polyfold_llms.folding.wish_idioms import IDIOMS
 from polyfold_llms.folding.wish_parts import PARTS
 from polyfold_llms.folding.wish_sizes import SIZES, Reader
 
@@ -30,13 +31,14 @@ def read_wish(text: str, garment_words: frozenset[str], folds_named: bool = Fals
         folds_named: allow *fold* as a verb: *fold it so that it fits in a drawer*.
     """
     words = plainest(text)
-    if _CARRIES.search(words):
+    if _CARRIES.search(_OWN_PLAN.sub("i ", words) if folds_named else words):
         return None
     wish = Wish()
     places = _TIMES if "fold" in words else _PLACES | _TIMES if folds_named else _PLACES
-    at, adjunct = 0, False
+    at, adjunct, told = 0, False, 0
     while at < len(words):
-        found = _rule_at(words, at)
+        told = max(told, _circumstance(words, at) if folds_named else 0)
+        found = _rule_at(words, at, folds_named)
         if found is not None:
             rule, match = found
             rule(wish, match)
@@ -58,9 +60,12 @@ def read_wish(text: str, garment_words: frozenset[str], folds_named: bool = Fals
             adjunct = True
         elif said in _vocabulary()["filler"] or (said == "fold" and folds_named):
             pass
+        elif (name := _named(words, at, garment_words) if folds_named else 0) > word.end():
+            at, adjunct = name, False
+            continue
         elif said in garment_words or _names(said, garment_words):
             adjunct = False
-        elif adjunct and not _means_something(said):
+        elif (adjunct and not _means_something(said)) or (at < told and _tells_nothing(said)):
             wish.passed.append(said)
         else:
             return None
@@ -69,11 +74,19 @@ def read_wish(text: str, garment_words: frozenset[str], folds_named: bool = Fals
 
 
 _CARRIES = re.compile(
-    r"(?:^|[.,;:] |please |and |then |you |to )(?:hang|put|place|lay|throw|carry|bring|drop|stuff|toss|stick|pop|drape"
+    r"(?:^|[.,;:] |please |and |then |you |to )(?:hang|put|place|lay|throw|carry|bring|drop|stuff|toss|stick"
+    r"|pop|drape"
     r"|take|pack|store|stow|move|send) (?:up |away )?(?:(?:the|this|that|these|those|my|your|it|them|a|two)\b ?)"
     r"(?:(?:\w+ )?\w+ )?(?:up|away|back|down|in|into|on|onto|over|to|inside|around)\b(?! (?:shape|form|order|half))"
 )
 """The cloth is to be brought somewhere: *hang the shirt up*, *put it in the drawer*."""
+
+_OWN_PLAN = re.compile(
+    r"\b(?:i|we|she|he|they)(?: (?:just|really|usually|always|also|will|would|can|could|may|might|have|am|are))*"
+    r"(?: (?:need|needs|want|wants|like|have|has|got|going|plan|planning|about|love|prefer) to)?"
+    r" (?=(?:hang|put|place|lay|throw|carry|bring|drop|stuff|toss|stick|pop|drape|take|pack|store|stow|move|send)\b)"
+)
+"""What people mean to do with the cloth themselves: *I want to hang it over the rail*."""
 
 _WORD = re.compile(r"[a-z0-9']+")
 _ADJUNCTS = frozenset(["for", "in", "of", "at", "before", "after", "next", "near", "from", "inside", "with"])
@@ -95,13 +108,58 @@ _LIKENESS = frozenset([
 ])  # fmt: skip
 
 
+_WHEREABOUTS = (
+    _PLACES | _TIMES | frozenset(["up", "down", "back", "again", "away", "around", "next", "not", "no", "never"])
+)
+_CLAUSE = re.compile(
+    r"(?:(?:and|but|so|because|since|as|after all|when|while|before|after|until|once|for when|in case|well|oh"
+    r"|sorry) )*"
+    r"(?:i|we|he|she|they|it|there|someone|somebody|everyone|everybody|guests?|(?:my|our|his|her|your|the|a|an"
+    r"|this|that|these"
+    r"|those|all|some) (?!first|next)[a-z]+)"
+    r"(?: (?!so |but |because |since )[a-z0-9']+)+"
+)
+_REQUEST = re.compile(
+    r"\b(?:(?:wants?|needs?|like|love|have|has|going|got)(?= (?:it|them|this|these|to (?:be|look|get|become"
+    r"|have|see|make"
+    r"|resemble|fold|turn|lie|end|point|cover)\b))|would|should|must|ought|make|turn|fold|folded|folding|look"
+    r"|looks|becomes?|please|can"
+    r"|could|shaped?|form|into|(?<!would )like(?! to)|resembles?|wish|wants?(?! to)|needs?(?! to| \w+ing))\b"
+)
+_DENIAL = re.compile(r"\b(?:not|no|never|without)\b")
+
+
+def _tells_nothing(said: str) -> bool:
+    """Whether a word of a circumstance makes no difference to the end."""
+    return said in _WHEREABOUTS or said.endswith("ing") or not _means_something(said)
+
+
+def _circumstance(words: str, at: int) -> int:
+    """Where a clause ends that tells why or when something is wished (*my suitcase is almost full*); 0 if none begins.
+
+    Its unknown words tell nothing about the end. A clause that asks for something is none, and neither is one that
+    denies something a wish could hold.
+    """
+    if (at and words[at - 1].isalnum()) or (
+        at and not re.search(r"(?:[.,!?:;]|\bso|\bbut|\bbecause|\bsince) ?$", words[:at])
+    ):
+        return 0
+    clause = _CLAUSE.match(words, at)
+    if clause is None or _REQUEST.search(clause.group(0)):
+        return 0
+    denied = _DENIAL.search(clause.group(0))
+    if denied and any(_rule_at(words, i, True) for i in range(at, clause.end())):
+        return 0
+    return clause.end()
+
+
 def _aside(words: str, at: int, garment_words: frozenset[str]) -> re.Match[str] | None:
     """Words that tell nothing about the end: a remark of its own, who wishes, what kind of garment or place it is."""
     if at and words[at - 1].isalnum():
         return None
     if not at or words[:at].rstrip()[-1:] in ".!?:;":
         remark = _REMARK.match(words, at)
-        if remark and _idle(remark.group(0)) and not any(_rule_at(words, i) for i in range(at, remark.end())):
+        if remark and _idle(remark.group(0)) and not any(_rule_at(words, i, True) for i in range(at, remark.end())):
             return remark
     subject = _SUBJECT.match(words, at)
     if subject and _idle(subject.group(0)):
@@ -121,7 +179,7 @@ def _modifies(words: str, modifier: re.Match[str], garment_words: frozenset[str]
     likened = re.search(r"(?:into|like|as) (?:an? )?$", words[:at]) is not None
     following = _WORD.match(words, end)
     named = following is not None and not likened and _names(following.group(0), garment_words)
-    return named or _rule_at(words, end) is not None
+    return named or _rule_at(words, end, True) is not None
 
 
 def _idle(said: str) -> bool:
@@ -131,6 +189,16 @@ def _idle(said: str) -> bool:
 def _names(word: str, garment_words: frozenset[str]) -> bool:
     entries = phrases().get(word, phrases().get(word.removesuffix("s"), ()))
     return any(category == "garment" and value in garment_words and len(said) == 1 for said, category, value in entries)
+
+
+def _named(words: str, at: int, garment_words: frozenset[str]) -> int:
+    """Where a name of the garment in several words ends (*bath mat*); 0 if none stands here."""
+    first = words[at:].partition(" ")[0]
+    for said, category, value in phrases().get(first, ()):
+        name = " ".join(said)
+        if category == "garment" and value in garment_words and re.match(rf"{name}(?:e?s)?\b", words[at:]):
+            return at + len(name)
+    return 0
 
 
 def _means_something(word: str) -> bool:
@@ -151,18 +219,19 @@ def _vocabulary() -> dict[str, frozenset[str]]:
     return words
 
 
-def _rule_at(words: str, at: int) -> tuple[Reader, re.Match[str]] | None:
-    """The rule that takes the most words here."""
+def _rule_at(words: str, at: int, folds_named: bool = False) -> tuple[Reader, re.Match[str]] | None:
+    """The rule that takes the most words here; ``folds_named`` as for :func:`read_wish`."""
     if at and words[at - 1].isalnum():
         return None
-    found = [(rule, match) for pattern, rule in _rules() if (match := pattern.match(words, at)) is not None]
+    found = [(rule, match) for pattern, rule in _rules(folds_named) if (match := pattern.match(words, at)) is not None]
     return max(found, key=lambda pair: pair[1].end(), default=None)
 
 
 @cache
-def _rules() -> list[tuple[re.Pattern[str], Reader]]:
+def _rules(folds_named: bool) -> list[tuple[re.Pattern[str], Reader]]:
+    patterns = (IDIOMS if folds_named else []) + SIZES + PARTS
     known = [(_any_of(head, words), _known(*head.split())) for head, words in _vocabulary().items() if head != "filler"]
-    return known + [(re.compile(pattern + r"\b"), rule) for pattern, rule in SIZES + PARTS]
+    return known + [(re.compile(pattern + r"\b"), rule) for pattern, rule in patterns]
 
 
 _BEFORE = {
