@@ -8,7 +8,7 @@ from polyfold_llms.rules import RulesLLM
 
 import polyfold
 from polyfold.cli import main
-from polyfold.errors import ConfigError
+from polyfold.errors import ConfigError, LLMAccessError
 from polyfold.interfaces import Reply
 from polyfold.providers import MEASURES, measured, provider_figure, provider_table
 from polyfold.results import Results, open_results
@@ -22,7 +22,9 @@ rules = answering(RulesLLM())
 
 
 def answer(request):
-    """``paid`` as the rules, with a price; ``hasty`` forgets the JSON at first where it finds a fold line."""
+    """``paid`` as the rules, with a price; ``hasty`` forgets the JSON of fold lines at first, ``mute`` that of all."""
+    if request.body["model"] == "mute":
+        return Sent(completion("no JSON"))
     body = rules(request).body
     if request.body["model"] == "paid":
         usage = {"prompt_tokens": ASKED, "completion_tokens": ANSWERED, "total_tokens": ASKED + ANSWERED}
@@ -40,7 +42,9 @@ def folder(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch, serve(answer) as server:
         patch.setenv("NO_PROXY", "127.0.0.1")
         patch.setenv("POLYFOLD_CACHE", str(folder / "cache"))
-        llms = {name: {"name": f"litellm:openai/{name}", "api_base": server.address} for name in ("paid", "hasty")}
+        llms = {
+            name: {"name": f"litellm:openai/{name}", "api_base": server.address} for name in ("paid", "hasty", "mute")
+        }
         study = polyfold.Study(
             name="llms", tasks=TASKS, first_seed=2000, instructions="first", edge_length=0.03,
             variants={"rules": {}, **{name: {"llm": llm} for name, llm in llms.items()}, "noop": {"agent": "noop"}},
@@ -67,6 +71,13 @@ def test_first_answers_and_repaired_ones_are_told_apart(results):
     assert found["hasty"]["valid at once %"] == "40.0 [33.3, 50.0]"
     assert found["hasty"]["valid after repair %"] == "100.0 [100.0, 100.0]"
     assert found["hasty"]["success %"] == found["rules"]["success %"]
+
+
+def test_a_model_whose_answers_can_never_be_used_fails_at_the_subgoals(results):
+    found = rows(results)["mute"]
+    assert found["valid at once %"] == found["valid after repair %"] == "0.0 [0.0, 0.0]"
+    assert found["subgoal failures %"] == "100.0 [100.0, 100.0]"
+    assert found["tokens out"] == "3 [3, 3]", "three answers"
 
 
 def test_tokens_and_cost_are_those_of_an_episode_and_latency_that_of_a_call(results):
@@ -146,7 +157,7 @@ def test_the_figure_shows_every_model_once_a_panel_with_a_dash_for_the_unknown(r
     figure = provider_figure(results)
     assert figure.axes[0].get_title() == "success %"
     assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == list(results.study.variants)
-    assert [text.get_text() for text in figure.axes[-1].texts] == ["free", "0.6250", "–", "–"]
+    assert [text.get_text() for text in figure.axes[-1].texts] == ["free", "0.6250", "–", "–", "–"]
     figure.savefig(tmp_path / "figure.png")
 
 
@@ -184,6 +195,14 @@ def test_accounts_count_questions_and_not_answers(tmp_path):
     transcript.write(tmp_path / "transcript.jsonl")
     lines = [json.loads(line) for line in (tmp_path / "transcript.jsonl").read_text("utf-8").splitlines()]
     assert [line.get("rejected") for line in lines] == [None, "no JSON", None, *["no JSON"] * 3, None]
+
+
+def test_a_key_that_one_variant_lacks_is_reported_before_the_others_fold(tmp_path, monkeypatch):
+    monkeypatch.delenv("OPENAI_API_KEY", raising=False)
+    study = polyfold.Study(name="s", tasks=TASKS, variants={"rules": {}, "keyed": {"llm": "litellm:openai/gpt-4o"}})
+    with pytest.raises(LLMAccessError, match="OPENAI_API_KEY"):
+        polyfold.run(study, tmp_path / "run", progress=False)
+    assert not open_results(tmp_path / "run").records
 
 
 @pytest.mark.parametrize("name", ["rules", "gpt-4o", "gemini-2.5-pro"])
