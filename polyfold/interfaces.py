@@ -154,6 +154,9 @@ class Conversation(Protocol):
     def ask(self, role: str, messages: Sequence[Message], params: Mapping[str, Any] | None = None) -> Reply:
         """Ask in a role (``subgoals``, ``fold_line``, ...) and record messages and reply."""
 
+    def reject(self, reason: str) -> None:
+        """Record that the last reply can't be used, and why."""
+
 
 @runtime_checkable
 class Planner(Protocol):

@@ -18,7 +18,7 @@ from polyfold import plugins
 from polyfold.errors import ConfigError
 from polyfold.evaluation import evaluate_with_picture
 from polyfold.store import RunDirectory, write_atomically
-from polyfold.study import Cell, Study, cells
+from polyfold.study import Cell, Study, cells, experiment_of
 from polyfold.thumbnails import PICTURES, picture_path
 
 __all__ = ["ENGINES", "evaluate"]
@@ -52,6 +52,7 @@ def evaluate(
 
     Raises:
         ConfigError: if the directory belongs to another study, or a component can't reach the workers.
+        LLMAccessError: if a variant's language model lacks its key; before anything is folded.
     """
     if engine not in ENGINES:
         raise ConfigError(f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}")
@@ -63,6 +64,7 @@ def evaluate(
     missing = [cell for cell in wanted if cell.key not in done]
     if missing and (workers > 1 or engine == "dask"):
         _check_portable()
+    _check_language_models(study, missing)
     job = partial(evaluate_with_picture, study, pictures=pictures)
     with closing(_results(job, missing, workers, engine, address)) as results:
         shown = _with_progress(results, len(wanted), list(done.values()), progress and bool(missing))
@@ -183,6 +185,15 @@ def _with_progress(results: Results, total: int, done: Sequence[Record], shown: 
             successes += record["success"]["polyfold"]
             bar.set_postfix_str(f"success {successes / finished:.0%}", refresh=False)
             bar.update()
+
+
+def _check_language_models(study: Study, missing: Sequence[Cell]) -> None:
+    """Construct each variant's once, so that no run ends at its second variant for want of a key."""
+    for variant in dict.fromkeys(cell.variant for cell in missing):
+        experiment = experiment_of(study, variant)
+        agent = plugins.component_class("agents", experiment.agent.name.partition(":")[0])
+        if "instruction" in getattr(agent, "requires", ()):
+            experiment.create("llms", "llm")
 
 
 def _check_portable() -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-__all__ = ["Estimate", "estimate", "paired"]
+__all__ = ["Estimate", "estimate", "paired", "ratio"]
 
 RESAMPLES = 2000
 
@@ -29,14 +29,26 @@ class Estimate:
 
 def estimate(values: Sequence[float | None]) -> Estimate:
     """Mean and interval of values; None and NaN (nothing to measure) are left out."""
-    found = np.array([value for value in values if value is not None], float)
-    found = found[np.isfinite(found)]
-    if len(found) == 0:
+    return ratio(values, [1.0] * len(values))
+
+
+def ratio(totals: Sequence[float | None], counts: Sequence[float]) -> Estimate:
+    """Sum of totals over sum of counts, such as seconds over calls, with an interval from whole episodes.
+
+    Args:
+        totals: one per episode; None and NaN (nothing to measure) are left out.
+        counts: what each is the total of; episodes with 0 are left out.
+    """
+    pairs = np.array([(a, b) for a, b in zip(totals, counts, strict=True) if a is not None and b], float).reshape(-1, 2)
+    pairs = pairs[np.isfinite(pairs).all(axis=1)]
+    if len(pairs) == 0:
         return Estimate(float("nan"), float("nan"), float("nan"), 0)
     # A fixed seed: the same results give the same table.
-    draws = np.random.default_rng(0).integers(0, len(found), (RESAMPLES, len(found)))
-    low, high = np.percentile(found[draws].mean(axis=1), [2.5, 97.5])
-    return Estimate(float(found.mean()), float(low), float(high), len(found))
+    draws = np.random.default_rng(0).integers(0, len(pairs), (RESAMPLES, len(pairs)))
+    sums = pairs[draws].sum(axis=1)
+    low, high = np.percentile(sums[:, 0] / sums[:, 1], [2.5, 97.5])
+    total, count = pairs.sum(axis=0)
+    return Estimate(float(total / count), float(low), float(high), len(pairs))
 
 
 def paired(ours: Sequence[float | None], theirs: Sequence[float | None]) -> Estimate:

@@ -25,7 +25,7 @@ from polyfold.goals import OpenTask
 from polyfold.judging import suite
 from polyfold.tasks import Task
 
-__all__ = ["Cell", "Study", "ablate", "cells", "experiment_of", "grid", "load"]
+__all__ = ["Cell", "Study", "ablate", "cells", "experiment_of", "grid", "load", "with_variants"]
 
 Overrides = dict[str, Any]
 
@@ -140,6 +140,16 @@ def grid(base: Study, settings: dict[str, Sequence[Any]], names: Sequence[str] |
     for variant in variants:
         experiment_of(study, variant)
     return study
+
+
+def with_variants(study: Study, names: Sequence[str]) -> Study:
+    """The study with some of its variants, in the order given. Raises ConfigError for one that it does not have."""
+    for name in names:
+        if name not in study.variants:
+            raise ConfigError(
+                f"the study {study.name!r} has no variant {name!r}; {_nearest(name, list(study.variants))}"
+            )
+    return study.model_copy(update={"variants": {name: study.variants[name] for name in names}})
 
 
 def _shown(value: Any) -> str:

@@ -83,8 +83,16 @@ class Transcript:
         entry["reply"] = asdict(reply)
         return reply
 
+    def reject(self, reason: str) -> None:
+        """Record that the last reply can't be used, and why; refusals count."""
+        self.entries[-1]["rejected"] = reason
+
     def accounts(self) -> dict[str, dict[str, Any]]:
-        """What each role took: calls, repairs, tries, tokens, seconds, US dollars; None where a call's is unknown."""
+        """What each role took: calls, repairs, tries, tokens, seconds, US dollars; None where a call's is unknown.
+
+        Of its ``questions``, those where a call brought no reply aside, ``valid_at_once`` had a first answer that could
+        be used, and ``valid`` had one in the end.
+        """
         roles = dict.fromkeys(entry["role"] for entry in self.entries)
         return {role: _account([entry for entry in self.entries if entry["role"] == role]) for role in roles}
 
@@ -96,7 +104,11 @@ class Transcript:
 
 def _account(entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     replies = [entry["reply"] for entry in entries if "reply" in entry]
+    valid = [question for question in _questions(entries) if "rejected" not in question[-1]]
     return {
+        "questions": len(_questions(entries)),
+        "valid_at_once": sum(len(question) == 1 for question in valid),
+        "valid": len(valid),
         "calls": len(entries),
         "repairs": sum(entry["attempt"] > 1 for entry in entries),
         "errors": len(entries) - len(replies),
@@ -109,6 +121,14 @@ def _account(entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "cost_sources": sorted({reply["cost_source"] for reply in replies if reply["cost_source"]}),
         "origins": sorted({reply["origin"] for reply in replies}),
     }
+
+
+def _questions(entries: Sequence[Mapping[str, Any]]) -> list[list[Mapping[str, Any]]]:
+    """Exchanges about the same step, repairs included; without those in which the model could not be reached."""
+    asked: dict[int | None, list[Mapping[str, Any]]] = {}
+    for entry in entries:
+        asked.setdefault(entry["step"], []).append(entry)
+    return [question for question in asked.values() if all("reply" in entry for entry in question)]
 
 
 def _total(values: Any) -> Any:

@@ -7,6 +7,7 @@ it does not understand it refuses, with the reason.
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +33,7 @@ class RulesLLM:
 
     def complete(self, messages: Sequence[Message], params: Mapping[str, Any]) -> Reply:
         """Answer a conversation; ``params`` (temperature and the like) have nothing to act on."""
+        clock = time.perf_counter()
         question = read_messages(messages)
         if question is None or not question.role:
             text = _refusal(
@@ -48,7 +50,8 @@ class RulesLLM:
                 text = {"subgoals": _subgoals, "fold_line": _fold_line, "picks": _picks}[question.role](question)
             except NotUnderstoodError as reason:
                 text = _refusal(str(reason))
-        return Reply(text, cost=0.0, cost_source="free", model_served=MODEL)
+        spent = round(time.perf_counter() - clock, 4)
+        return Reply(text, cost=0.0, cost_source="free", latency_s=spent, wall_s=spent, model_served=MODEL)
 
 
 def _garment(question: Question) -> Garment:

@@ -41,9 +41,10 @@ def ask_until_valid(
         reply = conversation.ask(prompt.id, messages, {**prompt.params, **params})
         try:
             return read(reply)
-        except RefusedError:
-            raise
         except PlanError as error:
+            conversation.reject(str(error))
+            if isinstance(error, RefusedError):
+                raise
             reason = error
         if attempt < max_attempts:
             messages = [

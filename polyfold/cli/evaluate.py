@@ -24,6 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="small pictures for the report; failed (default) has the first episode of each task too",
     )
     parser.add_argument("--garments", type=int, metavar="N", help="garments per kind instead of the study's")
+    parser.add_argument("--variants", nargs="+", metavar="NAME", help="only these of the study's variants")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -33,6 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
     chosen = study.load(arguments.config)
     if arguments.garments is not None:
         chosen = study.Study(**{**chosen.model_dump(), "garments": arguments.garments})
+    if arguments.variants is not None:
+        chosen = study.with_variants(chosen, arguments.variants)
     try:
         found = results.run(
             chosen,

@@ -15,7 +15,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("out", type=Path, metavar="DIR", help="run directory of an evaluation")
     parser.add_argument("--format", choices=FORMATS, default="markdown", help="default: markdown")
     parser.add_argument(
-        "--by", choices=["kind", "type", "task", "split", "step", "none"], default="kind", help="default: kind"
+        "--by",
+        choices=["kind", "type", "task", "split", "step", "none", "provider"],
+        default="kind",
+        help="default: kind; provider compares variants as language models, with validity, latency, tokens and cost",
     )
     parser.add_argument("--steps", choices=["single", "multi"], help="only tasks of one fold, or of several")
     parser.add_argument("--compare", nargs=2, metavar=("VARIANT", "BASELINE"), help="paired differences instead")
@@ -26,11 +29,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the table."""
+    from polyfold.providers import provider_table
     from polyfold.results import compare, open_results, table
 
     found = open_results(arguments.out)
     found = found.of_length(arguments.steps) if arguments.steps else found
     noise = None if arguments.noise_floor is None else open_results(arguments.noise_floor)
-    made = compare(found, *arguments.compare) if arguments.compare else table(found, groups=arguments.by, noise=noise)
+    if arguments.compare:
+        made = compare(found, *arguments.compare)
+    elif arguments.by == "provider":
+        made = provider_table(found)
+    else:
+        made = table(found, groups=arguments.by, noise=noise)
     print(getattr(made, arguments.format)())
     return 0

@@ -14,8 +14,8 @@ PLUGINS = sorted(path for path in (ROOT / "plugins").rglob("*.py"))
 ORDER = """
     errors geometry types polygon garments scoring interfaces hookspecs catalog plugins config prompts transcript goals
     tasks ideal guidance store record view pictures episode recovery agent judging sources folding
-    references attribution study thumbnails evaluation runner statistics tables plots results report benchmark cli
-    __main__
+    references attribution study thumbnails evaluation runner statistics tables plots results providers report
+    benchmark cli __main__
 """.split()  # noqa: SIM905
 """The core from the ground up: a module's top-level imports come from above it, or from its own package."""
 
