@@ -41,8 +41,8 @@ _LINE = (
     r"(?:[,(:]? ?\b(?:along|about|at|on|over|by|with|around|following)\b )?"
     r"(?:\b(?:a|the|its|their|each|one|both|these|respective|straight|slanting|slanted|oblique|inward|imaginary) )*"
     r"(?:(?<=[a-z] )(?:lines?|creases?|segments?|folds?|seams?|diagonals?) )?"
-    r""
-    r"(?:\b(?:that|which|passes|running|runs|run|drawn|going|leading|joining|linking|connecting|of|passing|straight|is|up) )*"
+    r"(?:\b(?:that|which|passes|running|runs|run|drawn|going|leading|joining|linking|connecting|of|passing|straight|"
+    r"is|up) )*"
     r"(?:\b(?:from|between|through|via) )?(?:\bup )?"
 )
 _OWN = r"(?:\b(?:the|its|their|left|right|each|respective|side of the|end of the|top of the) )*"
