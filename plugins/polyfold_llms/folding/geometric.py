@@ -38,7 +38,16 @@ _WORDS: tuple[tuple[str, str], ...] = (
     (r"\b(?:isosceles|right-angled|congruent (?=halves|parts|halfs))\b ?", ""),
     (rf"\b{_WHEREUPON},? (?=(?:it|they|both) )", "so that "),
     (rf",? ?\b{_WHEREUPON}\b,?", ", then"),
+    (r",? (?:whereby|thereby|thus) (?:the [a-z]+|it) (?:is|being) (?:halved|bisected)(?=[.;]|$)", ""),
+    (r",? \bwhereby\b", " so that"),
     (r"\byielding\b", "forming"),
+    (r"\b(?:its|the) antipode\b|\bthe antipodal corner\b", "the opposite corner"),
+    (
+        rf"\b({_NOUN}s?) (?:(?:that|which) (?:is|are) )?(?:situated|located|positioned|lying|found) "
+        r"(?=(?:at|in|on) the )",
+        r"\1 ",
+    ),
+    (r"\b(line|axis|segment) (?:(?:that|which) is )?(?:defined|determined|given|spanned) by\b", "line joining"),
     (r"\b(?:is|are) congruent (?:with|to)\b", "coincides with"),
     (r"\b(half|edge|side|corner|leg) (?:beneath|underneath|below)(?=[.,;]|$)", r"\1"),
     (r"\btranslated?\b (?=(?:the |both |each |to |onto |on |into |so |such |inward))", "move "),
@@ -62,6 +71,7 @@ _WORDS: tuple[tuple[str, str], ...] = (
         r"(?:altitude|height|median|bisector|(?:axis|line) of symmetry)\b",
         "halved",
     ),
+    (r"\bin the same (?:direction|sense) (once more|once again|again)\b", r"\1"),
     (
         r",? and (?:the|this) (?:result|strip|package|resulting [a-z]+) is (?:halved|folded in half) "
         r"(?:once more|once again|again)(?: in the same (?:direction|manner|sense|way))?",
@@ -75,7 +85,8 @@ _WORDS: tuple[tuple[str, str], ...] = (
 _RULES = tuple((re.compile(pattern), plain) for pattern, plain in _WORDS)
 
 _OF_EDGE = re.compile(
-    r"\b(?:both |the |two |both the )*corners (?:of|delimiting|bounding|on|along|at the ends of) the "
+    r"\b(?:both |the |two |both the )*corners (?:of|delimiting|bounding|adjacent to|incident to|lying on|"
+    rf"at|on|along|at the ends of) the "
     rf"(?P<side>{_SIDE}) "
     r"(?:edge|side|border)\b"
 )
@@ -83,6 +94,10 @@ _NAMELY = re.compile(rf"\bthe corners [^,.;]*, namely (?P<which>{_SIDES}(?:,? an
 _MIDLINE = re.compile(
     rf"\b(?:(?:the|a) {_LINE} )?(?P<begin>{_MIDPOINTS})"
     rf"(?P<which>(?:{_SIDE}) and (?:the )?(?:{_SIDE})|lateral|vertical|horizontal) {_BORDER}\b"
+)
+_BISECTOR = re.compile(
+    rf"\b(?:perpendicular )?bisector of (?:the |both |its )"
+    rf"(?P<which>{_SIDE}(?: and (?:the )?{_SIDE})?|lateral) {_BORDER}"
 )
 _ENDS = {frozenset(("left", "right")): "horizontal", frozenset(("top", "bottom")): "vertical"}
 _LATERAL = {"lateral": "horizontal", "vertical": "horizontal", "horizontal": "vertical"}
@@ -99,8 +114,14 @@ _REFLECTED = re.compile(
     r"(?: of (?:the|its) (?:cloth|shirt|garment|rectangle|square|trousers|pants))?"
     r"(?= ?[.,;]| so that| such that| and| until|$)"
 )
+_NEXT = re.compile(
+    r"[.,;]|\b(?:then|subsequently|thereafter|afterwards|next)\b|(?<=axis) and\b|(?<=line) and\b|(?<=symmetry) and\b"
+)
+"""Where the next step of a sentence begins."""
+_KNOWN_END = re.compile(r"\b(?:hem|waist|waistband|cuffs|leg ends)\b")
 _ACROSS_DIAGONAL = re.compile(
     rf"\b(?P<verb>reflect|mirror)(?P<form>ed)? (?P<between>[^.;,]*?){_ACROSS} (?:the|its)(?: opposite| other)? diagonal"
+    r"(?: (?:joining|connecting|that joins|that connects) the other two (?:[a-z]+ )?corners)?"
     r"(?= ?[.,;]| so that| such that|$)"
 )
 _BY_REFLECTION = re.compile(rf"\bby (?:a )?(?:reflection|mirroring) {_ACROSS} [^,;.]*, ")
@@ -112,6 +133,11 @@ _ABSOLUTE = re.compile(
     rf", (?P<part>(?:the|its) {_SIDES} {_NOUN}) (?:thereby |thus )?"
     rf"(?:being {_FOLDED}|landing|coming to (?:rest|lie)) (?P<place>(?:to|onto|on|upon|over) )"
 )
+_BEING = re.compile(
+    rf"\b(?P<head>(?:halved|bisected|folded|creased)\b[^.,;]*), (?P<part>(?:the|its|both) [a-z ]{{3,30}}?) being "
+    rf"(?P<does>{_FOLDED} (?:to|onto|on|upon|over)\b)"
+)
+"""*Bisected, the right half being laid on the left half*: how the fold before it is meant."""
 _CREASE_THEN = re.compile(
     rf"\b(?:crease|fold) (?P<line>(?:along|through|from|at|across|about) [^.;,]*?)"
     rf"(?:,? and fold| ?, with|,) (?P<part>the {_SIDES} sleeve)(?: being folded)? ?"
@@ -121,10 +147,10 @@ _CREASE_HALF = re.compile(
     rf"\b(?:crease|fold) (?:along|through|about|at|across) [^.;,]*midline[^.;,]*, (?P<part>the {_SIDE} half) "
     rf"being {_FOLDED} (?P<place>(?:to|onto|on|upon|over) the {_SIDE})(?: half)?(?=[.;,]|$)"
 )
+_BOTH = rf"the (?P<{{}}>{_SIDES})(?: {_NOUN})? and (?:the )?(?P<{{}}>{_SIDES}) (?P<{{}}>{_NOUN})s?"
 _RESPECTIVELY = re.compile(
-    rf"\bthe (?P<a>{_SIDES}) and (?:the )?(?P<b>{_SIDES}) (?P<noun>corner|edge|side|sleeve|leg)s (?P<does>[^.,;]*?)"
-    rf"(?P<to>onto|on|to|upon|with) the (?P<c>{_SIDES}) and (?:the )?(?P<d>{_SIDES}) "
-    r"(?:corner|edge|side|sleeve|leg)s,? "
+    rf"\b{_BOTH.format('a', 'b', 'noun')} (?P<does>[^.,;]*?)(?:onto|on|to|upon|with) "
+    rf"{_BOTH.format('c', 'd', 'place')},? "
     r"respectively(?:,? (?:and )?in (?:that order|this order|the order(?: (?:stated|given|named))?))?"
 )
 _GAPPED = re.compile(
@@ -153,6 +179,7 @@ def without_geometry(text: str) -> str:
         text = pattern.sub(plain, text)
     text = _CUT_CORNER.sub(_cut_corner, text)
     text = _MIDLINE.sub(_midline, text)
+    text = _BISECTOR.sub(_bisector, text)
     text = _OF_EDGE.sub(r"the two \g<side> corners", text)
     text = _NAMELY.sub(r"the \g<which> corners", text)
     text = _BY_REFLECTION.sub("", text)
@@ -162,6 +189,7 @@ def without_geometry(text: str) -> str:
     text = _ABSOLUTE.sub(r"then \g<part> is folded \g<place>", text)
     text = _CREASE_HALF.sub(r"fold \g<part> \g<place> half", text)
     text = _CREASE_THEN.sub(r"fold \g<part> \g<line>", text)
+    text = _BEING.sub(r"\g<head> so that \g<part> is \g<does>", text)
     text = _RESPECTIVELY.sub(_respectively, text)
     text = _GAPPED.sub(r", then fold \g<part> onto ", text)
     text = _HAVING.sub(r"fold the \g<part> onto the \g<place>, then fold the \g<then> onto the \g<there>", text)
@@ -188,6 +216,14 @@ def _midline(found: re.Match[str]) -> str:
     return f"{'along ' if bare else ''}the {way} midline"
 
 
+def _bisector(found: re.Match[str]) -> str:
+    """The perpendicular bisector of an edge runs between the edges beside it."""
+    sides = {_plain_side(side) for side in re.findall(_SIDE, found["which"])}
+    if len(sides & {"left", "right"}) and len(sides & {"top", "bottom"}):
+        return found.group(0)
+    return "vertical midline" if sides & {"top", "bottom"} else "horizontal midline"
+
+
 def _cut_corner(found: re.Match[str]) -> str:
     """A crease between the middles of two edges that meet lays their corner on the centre."""
     sides = {_plain_side(found["first"]), _plain_side(found["second"])}
@@ -198,15 +234,22 @@ def _cut_corner(found: re.Match[str]) -> str:
 
 
 def _reflected(found: re.Match[str]) -> str:
-    """*The left half is reflected across the vertical axis*: it comes to lie on the opposite half."""
+    """*The left half is reflected across the vertical axis*: it comes to lie on the opposite half.
+
+    What no single fold does, such as the left half across the horizontal axis, stays a word that is not understood.
+    """
     before = found.string[: found.start()] if found["form"] else ""
-    clause = re.split(r"[.,;]", before)[-1] + found["between"]
+    clause = _NEXT.split(before)[-1] + found["between"]
+    if re.search(r"\bonto\b", clause):
+        return found.group(0)
     sides = re.findall(r"\b(?:top|bottom|upper|lower|left|right)\b", clause)
-    if len(sides) != 1 or re.search(r"\b(?:onto|corner|quarter|third|sleeve)\b", clause):
+    named = sides or _KNOWN_END.search(clause)
+    if not named:
         return found.group(0)
-    way = "vertical" if sides[0] in ("left", "right") else "horizontal"
-    if found["way"] and found["way"].strip() != way:
-        return found.group(0)
+    way = "vertical" if sides and sides[0] in ("left", "right") else "horizontal"
+    other = found["way"] and found["way"].strip() != way
+    if other or len(sides) > 1 or re.search(r"\b(?:corner|quarter|third|sleeve)s?\b", clause):
+        return f"by reflection {found['between']}"
     return f"fold{found['form'] or ''}{found['between']} onto the opposite side"
 
 
