@@ -82,7 +82,27 @@ _WORDS: tuple[tuple[str, str], ...] = (
         "is folded the same way",
     ),
 )
-_RULES = tuple((re.compile(pattern), plain) for pattern, plain in _WORDS)
+_STEPS: tuple[tuple[str, str], ...] = (
+    (r"\b(?:both |the |two )*(?:the )?horizontal (edges|sides|borders)\b", r"the top and bottom \1"),
+    (r"\b(?:both |the |two )*(?:the )?(?:vertical|lateral) (edges|sides|borders)\b", r"the left and right \1"),
+    (
+        r"\bthe (?:two )?legs (?:are|shall be|are to be) (?:superimposed|folded|laid|placed)"
+        r"(?: on each other| together)?, "
+        r"the (left|right)(?: leg)? (?:upon|on|onto|over) the (?:left|right)\b",
+        r"the \1 leg is folded onto the other leg",
+    ),
+    (r",? ?\b(?:in succession|successively)\b|\bsuccessive (?=[a-z]+ folds)", ""),
+    (rf"\b(?:in|of|at) the ({_SIDES}) quadrant\b", r"at the \1"),
+    (r"\b(?:to be )?(?:made|rendered) coincident with\b", "to be folded onto"),
+    (rf", the ({_SIDES})(?: {_NOUN})? preceding the {_SIDES}(?: {_NOUN})?(?=[.;]|$)", r", the \1 one first"),
+    (
+        rf"\bthe [a-z]+ {_FINITE} (?:then |subsequently |thereafter )?(?:divided|folded) into thirds, "
+        rf"(?=the {_SIDE} third)",
+        "then ",
+    ),
+    (r"\bthird being (?=folded)", "third is "),
+)
+_RULES = tuple((re.compile(pattern), plain) for pattern, plain in (*_WORDS, *_STEPS))
 
 _OF_EDGE = re.compile(
     r"\b(?:both |the |two |both the )*corners (?:of|delimiting|bounding|adjacent to|incident to|lying on|"
@@ -262,6 +282,10 @@ def _across_diagonal(found: re.Match[str]) -> str:
 
 def _respectively(found: re.Match[str]) -> str:
     noun = found["noun"]
+    pairs = [[{_plain_side(side) for side in re.findall(_SIDE, found[name])} for name in pair] for pair in ("ac", "bd")]
+    edge = pairs[0][0] & pairs[1][0]
+    if noun == "corner" and len(edge) == 1 and all(start - place == edge for start, place in pairs):
+        return f"fold the {edge.pop()} edge onto the opposite edge"
     first = f"fold the {found['a']} {noun} onto the {found['c']} {noun}"
     return f"{first}, then fold the {found['b']} {noun} onto the {found['d']} {noun}"
 
