@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from polyfold_llms.folding.geometric import without_geometry
 from polyfold_llms.folding.lexicon import phrases
 from polyfold_llms.folding.spelling import variants
 
@@ -40,7 +41,8 @@ _LINE = (
     r"(?:[,(:]? ?\b(?:along|about|at|on|over|by|with|around|following)\b )?"
     r"(?:\b(?:a|the|its|their|each|one|both|these|respective|straight|slanting|slanted|oblique|inward|imaginary) )*"
     r"(?:(?<=[a-z] )(?:lines?|creases?|segments?|folds?|seams?|diagonals?) )?"
-    r"(?:\b(?:that|which|running|runs|run|drawn|going|leading|joining|linking|connecting|of|passing|straight|is|up) )*"
+    r"(?:\b(?:that|which|passes|running|runs|run|drawn|going|leading|joining|linking|connecting|of|passing|straight|"
+    r"is|up) )*"
     r"(?:\b(?:from|between|through|via) )?(?:\bup )?"
 )
 _OWN = r"(?:\b(?:the|its|their|left|right|each|respective|side of the|end of the|top of the) )*"
@@ -72,7 +74,7 @@ _MAX_COURTESY = 12
 def reworded(text: str) -> str:
     """The same instruction in plainer words; lower case is expected."""
     text = _ABBREVIATED.sub(lambda found: _SHORT[found.group(0)], text)
-    text = _MIND.sub(" ", text)
+    text = without_geometry(_MIND.sub(" ", text))
     text = _AS_BEFORE.sub(" ", _IN_THE_END.sub(" ", text))
     text = _DONE.sub(lambda found: f"{found['verb']} {found['part']} {found['where']}, then ", text)
     text = _ALIGNED.sub(" ", text)
