@@ -80,8 +80,8 @@ class Failure:
     """Why an episode ended early.
 
     Attributes:
-        stage: ``refused``, ``grounding``, ``planning``, ``unanswered`` (nothing came from the language model) or
-            ``execution``.
+        stage: ``refused``, ``grounding``, ``planning``, ``unanswered`` (nothing came from the language model),
+            ``execution``, or in studies ``infrastructure`` (there was nothing to compare with, or no guidance).
         reason: the error's message.
     """
 

@@ -22,6 +22,7 @@ __all__ = [
     "rotate",
     "signed_distance",
     "span_on_mask",
+    "turn_onto",
 ]
 
 Points = NDArray[np.float64]
@@ -85,6 +86,19 @@ def rotate(points: ArrayLike, angle: float, centre: ArrayLike = (0.0, 0.0)) -> P
     c, s = np.cos(angle), np.sin(angle)
     centre = np.asarray(centre, float)
     return (np.asarray(points, float) - centre) @ np.array([[c, s], [-s, c]]) + centre
+
+
+def turn_onto(points: ArrayLike, targets: ArrayLike) -> float:
+    """The angle [rad] for :func:`rotate` that, about their centroid, brings points nearest to corresponding targets.
+
+    Least squares after both centroids are laid on each other (Kabsch in the plane; DOI 10.1107/S0567739476001873).
+
+    Args:
+        points, targets: shape (N, 2), in the same unit.
+    """
+    points, targets = np.asarray(points, float), np.asarray(targets, float)
+    a, b = points - points.mean(axis=0), targets - targets.mean(axis=0)
+    return float(np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum()))
 
 
 def polygon_area(polygon: ArrayLike) -> float:

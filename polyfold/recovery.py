@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from polyfold.geometry import contour_of, iou, mirror, rotate
+from polyfold.geometry import contour_of, iou, mirror, rotate, turn_onto
 from polyfold.types import Action, FoldLine, Observation
 
 __all__ = ["Attempt", "Finding", "Motion", "inspect"]
@@ -223,11 +223,9 @@ def _same_piece(before: Floats, now: Floats, pick: Floats, corner: Floats) -> tu
 
 
 def _carried(points: Floats, goal: Floats) -> tuple[float, Motion]:
-    """The rigid motion that lays points [px], shape (N, 2), on others (Kabsch), and the remaining distance [px]."""
+    """The rigid motion that lays points [px], shape (N, 2), on others, and the remaining distance [px]."""
     centre, target = points.mean(axis=0), goal.mean(axis=0)
-    a, b = points - centre, goal - target
-    angle = np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
-    motion = Motion(float(angle), tuple(float(v) for v in target - centre), tuple(float(v) for v in centre))
+    motion = Motion(turn_onto(points, goal), tuple(float(v) for v in target - centre), tuple(float(v) for v in centre))
     return float(np.sqrt(((motion.points(points) - goal) ** 2).sum(axis=1).mean())), motion
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
-from polyfold.geometry import iou
+from polyfold.geometry import iou, rotate, turn_onto
 from polyfold.scoring import Outcome
 
 __all__ = ["MPPE", "MIoU", "MovedPartError"]
@@ -91,8 +91,7 @@ def _errors(result: Outcome, reference: Outcome, align: bool) -> Floats:
     """Distance [mm] of every particle from where the reference has it, shape (N,)."""
     positions, wanted = result.end.positions, reference.end.positions
     if align:
-        turn, shift = _rigid(positions, wanted)
-        positions = np.column_stack([positions[:, :2] @ turn + shift, positions[:, 2]])
+        positions = np.column_stack([_laid_onto(positions, wanted, positions[:, :2]), positions[:, 2]])
     return 1000.0 * np.linalg.norm(positions - wanted, axis=1)
 
 
@@ -100,21 +99,16 @@ def _aligned_mask(result: Outcome, reference: Outcome) -> NDArray[np.bool_]:
     """The result's silhouette as the camera would see it after the rigid motion that fits its particles best."""
     import cv2
 
-    turn, shift = _rigid(result.end.positions, reference.end.positions)
     camera = result.end.camera
     corners = np.array([[0.0, 0.0], [camera.width, 0.0], [0.0, camera.height]])
-    moved = camera.to_pixels(camera.to_world(corners)[:, :2] @ turn + shift)
+    on_table = camera.to_world(corners)[:, :2]
+    moved = camera.to_pixels(_laid_onto(result.end.positions, reference.end.positions, on_table))
     matrix = cv2.getAffineTransform(corners.astype(np.float32), moved.astype(np.float32))
     size = (camera.width, camera.height)
     return cv2.warpAffine(result.mask.astype(np.uint8), matrix, size, flags=cv2.INTER_NEAREST).astype(bool)
 
 
-def _rigid(points: Floats, target: Floats) -> tuple[Floats, Floats]:
-    """Turn, shape (2, 2), and shift [m], shape (2,), that bring points [m], shape (N, 3), nearest to ``target`` on the
-    table: ``points[:, :2] @ turn + shift`` (Kabsch in the plane)."""
-    centre, goal = points[:, :2].mean(axis=0), target[:, :2].mean(axis=0)
-    a, b = points[:, :2] - centre, target[:, :2] - goal
-    angle = np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
-    c, s = np.cos(angle), np.sin(angle)
-    turn = np.array([[c, s], [-s, c]])
-    return turn, goal - centre @ turn
+def _laid_onto(particles: Floats, wanted: Floats, points: Floats) -> Floats:
+    """Points on the table [m], shape (M, 2), after the rigid motion of particles, shape (N, 3), onto ``wanted``."""
+    centre, goal = particles[:, :2].mean(axis=0), wanted[:, :2].mean(axis=0)
+    return rotate(points, turn_onto(particles[:, :2], wanted[:, :2]), centre) + goal - centre

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from polyfold import plugins
 from polyfold.errors import PolyfoldError
+from polyfold.geometry import turn_onto
 from polyfold.polygon import FoldedModel, Template
 from polyfold.tasks import fold_lines, load_suite
 from polyfold.types import Observation, Scene
@@ -119,9 +120,7 @@ def _errors(found: Floats, truth: Floats) -> Floats:
 
 
 def _turned(found: Floats, truth: Floats) -> bool:
-    a, b = found - found.mean(0), truth - truth.mean(0)
-    angle = np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
-    return bool(abs(np.degrees(angle)) > 45.0)
+    return abs(np.degrees(turn_onto(found, truth))) > 45.0
 
 
 def _stands_on_corner(truth: Floats) -> bool:

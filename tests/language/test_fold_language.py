@@ -131,7 +131,7 @@ def test_developed_goals_are_nearly_all_reached(planner, rules, suite):
     """Goals without a way; before ends were compared, 23 of the first 90 were reached."""
     content = tomllib.loads((Path(__file__).parent / "goals.toml").read_text("utf-8"))
     missed = [goal["id"] for goal in content["goal"] if not reaches(OpenTask(**goal), planner, rules, suite)]
-    assert len(missed) <= 0.11 * len(content["goal"]), missed
+    assert len(missed) <= 0.1 * len(content["goal"]), missed
 
 
 @pytest.mark.parametrize(
