@@ -107,3 +107,10 @@ def test_iou_of_empty_masks_is_one_and_of_disjoint_ones_zero():
     assert geometry.iou(a, b) == 1
     a[0], b[1] = True, True
     assert geometry.iou(a, b) == 0
+
+
+@given(cloud, st.floats(-3.1, 3.1), point, point)
+def test_the_turn_onto_moved_points_is_the_one_they_were_turned_by(points, angle, centre, shift):
+    assume(np.ptp(points, axis=0).max() > 1)
+    moved = geometry.rotate(points, angle, centre) + shift
+    assert geometry.turn_onto(points, moved) == pytest.approx(angle, abs=1e-6)
