@@ -25,12 +25,16 @@ class Train:
         parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder; resumed if it exists")
         parser.add_argument("--device", choices=["auto", "cpu", "cuda"], default="auto", help="default: auto")
         parser.add_argument("--data", metavar="DIR", action="append", help="data set instead of the file's; repeatable")
-        parser.add_argument("--seed", type=int, help="instead of the file's")
+        parser.add_argument("--seed", type=int, metavar="N", help="instead of the file's")
+        parser.add_argument(
+            "--folds", type=int, metavar="N", help="first folds of each data set, instead of the file's"
+        )
 
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Train what is missing and say where the weights are."""
-        config = read_config(arguments.config, data=arguments.data, seed=arguments.seed)
+        changes = {name: getattr(arguments, name) for name in ("data", "seed", "folds")}
+        config = read_config(arguments.config, **changes)
         from .training import train
 
         try:
@@ -58,4 +62,5 @@ def read_config(path: str | Path, **changes: object) -> TrainingConfig:
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise ConfigError(f"{path} has a bad value for {where!r}: {first['msg']}; correct it") from error
+        what = f"a bad value for {where!r}" if where else "values that don't go together"
+        raise ConfigError(f"{path} has {what}: {first['msg']}; correct it") from error

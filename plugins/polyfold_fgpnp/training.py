@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from torch import Tensor
 
 from polyfold.errors import ConfigError
@@ -24,7 +24,7 @@ from .networks import NetworkConfig, ValueNetwork
 from .ranks import rank_correlation
 from .weights import Provenance, save_weights
 
-__all__ = ["TrainingConfig", "train"]
+__all__ = ["TrainingConfig", "snapshot_name", "train"]
 
 GUARD_STEPS, LEAST_SPREAD = 300, 0.01
 """After so many steps, predictions must differ over the picks of a state by this, in standard deviations of labels."""
@@ -36,7 +36,12 @@ CLIP = 1.0
 
 
 class TrainingConfig(BaseModel):
-    """What to train, from what and how; read from TOML."""
+    """What to train, from what and how; read from TOML.
+
+    Snapshots are the weights after some epochs, for learning curves. They come from one training whose learning rate
+    falls along a cosine, so early ones are noisier than the end of a training of that length. They change nothing else:
+    neither the final weights, nor what these say they were trained from, nor which folder a training belongs to.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -47,6 +52,7 @@ class TrainingConfig(BaseModel):
     scale: Literal["linear", "log"] = Field("log", description="how rewards become labels")
     state_weight: float = Field(1.0, ge=0, description="weight of the error that all picks of a state share; 1: MSE")
     epochs: int = Field(60, ge=1, description="passes over all states")
+    snapshots: tuple[int, ...] = Field((), description="epochs after which the weights so far are kept as well")
     batch: int = Field(32, ge=1, description="states in a step")
     learning_rate: float = Field(2e-3, gt=0, description="largest, of AdamW")
     weight_decay: float = Field(1e-2, ge=0, description="of AdamW")
@@ -54,13 +60,30 @@ class TrainingConfig(BaseModel):
     precision: Literal["float32", "bfloat16"] = Field("float32", description="of the convolutions in training")
     seed: int = Field(0, ge=0, description="of weights, order and augmentation")
 
+    @model_validator(mode="after")
+    def _snapshots_are_epochs(self) -> TrainingConfig:
+        for epoch in self.snapshots:
+            if not 1 <= epoch <= self.epochs:
+                raise ValueError(f"snapshots has {epoch}, and epochs go from 1 to {self.epochs}")
+        return self
+
+    def plain(self) -> dict[str, Any]:
+        """What decides the weights, as plain data."""
+        return self.model_dump(mode="json", exclude={"snapshots"})
+
+
+def snapshot_name(epoch: int) -> str:
+    """File of the weights after an epoch, in the folder of the training."""
+    return f"weights-{epoch:04d}.safetensors"
+
 
 def train(config: TrainingConfig, out: str | Path, device: str = "auto", progress: bool = True) -> Path:
     """Train, or go on with training, and return the path of the weights.
 
     Args:
         config: what to do.
-        out: folder for ``weights.safetensors``, ``checkpoint.safetensors``, ``metrics.jsonl`` and TensorBoard's log.
+        out: folder for ``weights.safetensors``, snapshots such as ``weights-0020.safetensors``,
+            ``checkpoint.safetensors``, ``metrics.jsonl`` and TensorBoard's log.
         device: ``cpu``, ``cuda`` or ``auto``.
         progress: show a progress bar.
 
@@ -72,31 +95,33 @@ def train(config: TrainingConfig, out: str | Path, device: str = "auto", progres
     out = Path(out)
     target = torch.device(("cuda" if torch.cuda.is_available() else "cpu") if device == "auto" else device)
     sets = [load_dataset(path) for path in config.data]
-    _claim(out, config, [data.description["hash"] for data in sets])
+    hashes = tuple(data.description["hash"] for data in sets)
+    _claim(out, config, hashes)
     examples = make_examples(
         sets, config.network.variant, config.network.frame, config.reward, config.scale, config.folds
     )
     learned, validation = _split(examples, config.held_out)
     run = _Run(config, learned, target)
     first = run.resume(out / "checkpoint.safetensors")
+    provenance = Provenance(config.plain(), hashes, run.mean, run.deviation)
     with Logs(out, first) as logs, tqdm(total=config.epochs, initial=first, unit="epoch", disable=not progress) as bar:
         for epoch in range(first, config.epochs):
             loss = run.epoch(epoch)
             found = {"loss": loss, **run.validate(validation)}
             logs.write(epoch + 1, found)
+            if epoch + 1 in config.snapshots:  # before the checkpoint: a run killed between the two writes it again
+                so_far = replace(provenance, config={**provenance.config, "epochs_done": epoch + 1})
+                save_weights(out / snapshot_name(epoch + 1), run.network, so_far)
             run.save(out / "checkpoint.safetensors", epoch + 1)
             bar.set_postfix({name: f"{value:.3f}" for name, value in found.items()}, refresh=False)
             bar.update()
-    provenance = Provenance(
-        config.model_dump(mode="json"), tuple(data.description["hash"] for data in sets), run.mean, run.deviation
-    )
     save_weights(out / "weights.safetensors", run.network, provenance)
     return out / "weights.safetensors"
 
 
-def _claim(out: Path, config: TrainingConfig, data: list[str]) -> None:
+def _claim(out: Path, config: TrainingConfig, data: tuple[str, ...]) -> None:
     """Note what is trained here; refuse a folder that holds another training."""
-    wanted = json.dumps({"config": config.model_dump(mode="json"), "data": data}, indent=2) + "\n"
+    wanted = json.dumps({"config": config.plain(), "data": data}, indent=2) + "\n"
     note = out / "training.json"
     if note.exists() and note.read_text("utf-8") != wanted:
         raise ConfigError(f"{out} holds a training with another configuration or other data; choose another folder")

@@ -87,6 +87,33 @@ def test_a_training_that_was_killed_ends_in_the_same_weights(folds_folder, tmp_p
     assert all(torch.allclose(whole[name].float(), resumed[name].float(), atol=1e-5) for name in whole)
 
 
+def test_snapshots_are_the_weights_so_far_and_change_nothing_else(folds_folder, tmp_path, monkeypatch, weights):
+    save = training._Run.save
+
+    def die_before_saving(run, path, epoch):
+        if epoch == 2:
+            raise KeyboardInterrupt
+        save(run, path, epoch)
+
+    config = small(folds_folder, snapshots=(2, 3))
+    with monkeypatch.context() as patch:
+        patch.setattr(training._Run, "save", die_before_saving)
+        with pytest.raises(KeyboardInterrupt):
+            train(config, tmp_path, "cpu", progress=False)
+    again = train(config, tmp_path, "cpu", progress=False)
+    assert sorted(path.name for path in tmp_path.glob("weights-*")) == [f"weights-000{n}.safetensors" for n in (2, 3)]
+    early, early_from = load_weights(tmp_path / "weights-0002.safetensors", "csam")
+    late, _ = load_weights(tmp_path / "weights-0003.safetensors", "csam")
+    end, end_from = load_weights(again)
+    assert early_from.config["epochs_done"] == 2
+    assert end_from.config == load_weights(weights["csam"])[1].config
+    early, late, end, plain = (n.state_dict() for n in (early, late, end, load_weights(weights["csam"])[0]))
+    assert all(torch.equal(late[name], end[name]) for name in end)
+    assert all(torch.allclose(plain[name].float(), end[name].float(), atol=1e-5) for name in end)
+    assert not all(torch.allclose(early[name].float(), end[name].float(), atol=1e-5) for name in end)
+    train(small(folds_folder), tmp_path, "cpu", progress=False)  # the same training, without snapshots
+
+
 def test_a_folder_with_another_training_is_refused(folds_folder, weights):
     with pytest.raises(ConfigError, match="another configuration"):
         train(small(folds_folder, seed=9), weights["csam"].parent, "cpu", progress=False)
@@ -200,8 +227,14 @@ def test_a_variant_without_trials_says_what_to_collect(folds):
 def test_training_from_the_command_line(folds_folder, tmp_path, capsys):
     config = tmp_path / "csam.toml"
     config.write_text(f'data = ["{folds_folder}"]\nepochs = 1\n[network]\nbase = 4\nlevels = 2\n')
-    assert main(["train", str(config), "--out", str(tmp_path / "out"), "--device", "cpu"]) == 0
+    out = tmp_path / "out"
+    assert main(["train", str(config), "--out", str(out), "--device", "cpu", "--seed", "3", "--folds", "49"]) == 0
     assert "weights.safetensors" in capsys.readouterr().out
+    found = load_weights(out / "weights.safetensors")[1].config
+    assert (found["seed"], found["folds"]) == (3, 49)
+    config.write_text('data = ["x"]\nepochs = 20\nsnapshots = [10, 30]\n')
+    with pytest.raises(ConfigError, match="snapshots has 30"):
+        read_config(config)
     config.write_text('data = ["x"]\nepochs = -1\n')
     with pytest.raises(ConfigError, match="epochs"):
         read_config(config)
