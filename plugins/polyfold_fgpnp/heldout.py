@@ -1,10 +1,13 @@
 """How well policies pick on garments that nothing was trained on: ``python -m polyfold_fgpnp.heldout DATA POLICY...``.
 
 ``DATA`` is a data set of ``polyfold collect --seeds 1100-1149 --mix uniform=16``. Each policy folds every state; a
-policy is written NAME or NAME=WEIGHTS. Prints two Markdown tables: the rank correlation of learned maps with what came
-out, over the picks of a state; and the error of the pick that each policy chose, beside that of a random first pick
-(the mean over the picks tried) and of the best fold known of the state, whoever made it. What was executed is kept in
-``DATA/policies``, so that another policy can be added later.
+policy is written NAME or NAME=WEIGHTS. Prints two Markdown tables, which :mod:`polyfold_fgpnp.heldout_tables` explains:
+how well learned maps order the picks tried in a state, beside what learns nothing; and the error and regret of the pick
+that each policy chose, beside those of a random first pick. Where a policy refuses a state, that counts as leaving the
+cloth as it is.
+
+What was executed is kept in ``DATA/policies``, so that another policy can be added later; other weights are another
+file. After a change to the code of a policy or of the simulator, remove the files of what it concerns.
 """
 
 from __future__ import annotations
@@ -12,28 +15,29 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polyfold import plugins
-from polyfold.errors import PlanError
+from polyfold.errors import ConfigError, PlanError
 from polyfold.interfaces import Policy
-from polyfold.statistics import Estimate, estimate
 
 from .dataset import Dataset, load_dataset
+from .heldout_tables import correlation_table, regret_table
 from .interaction import LINES_PER_STAGE, Interaction, execute, situations
-from .learned import CoupledActionMap
-from .ranks import rank_correlation
+from .learned import CoupledActionMap, LearnedPolicy
 from .workers import in_processes
 
 __all__ = ["main"]
 
-RANDOM, BEST = "random first pick", "best known"
+SAME_STATE = 0.01
+"""States whose flap's way differs by more than this share are not the same."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +53,13 @@ class Contestant:
 
     @property
     def file(self) -> str:
-        """Name of the file that keeps its results: other weights, another file."""
+        """Name of the file that keeps its results: other weights, be they the package's, another file."""
         name, _, weights = self.text.partition("=")
-        return f"{name}-{hashlib.sha256(Path(weights).read_bytes()).hexdigest()[:12]}" if weights else name
+        cls = plugins.component_class("policies", name)
+        if not weights and not issubclass(cls, LearnedPolicy):
+            return name
+        content = Path(weights) if weights else files("polyfold_fgpnp") / "weights" / f"{cls.variant}.safetensors"
+        return f"{name}-{hashlib.sha256(content.read_bytes()).hexdigest()[:12]}"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -64,9 +72,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     data = load_dataset(options.data)
     contestants = [Contestant(text) for text in options.policies]
     errors = {one.text: _executed(options.data, data, one, options.workers) for one in contestants}
-    print("\n".join(_correlation_table(data, contestants)))
+    policies = {one.text: one.create() for one in contestants}
+    maps = {name: policy for name, policy in policies.items() if isinstance(policy, CoupledActionMap)}
+    print(correlation_table(data, maps).markdown())
     print()
-    print("\n".join(_error_table(data, errors)))
+    print(regret_table(data, errors).markdown())
 
 
 def _executed(path: Path, data: Dataset, contestant: Contestant, workers: int) -> NDArray[np.float64]:
@@ -82,11 +92,20 @@ def _executed(path: Path, data: Dataset, contestant: Contestant, workers: int) -
     missing = [job for job in range(data.states // each) if job not in found]
     work = partial(_fold_job, interaction, contestant)
     with kept.open("a", encoding="utf-8") as stream:
-        for job, errors in tqdm(in_processes(work, missing, workers), total=len(missing), desc=contestant.text):
+        for job, (errors, ways) in tqdm(in_processes(work, missing, workers), total=len(missing), desc=contestant.text):
+            _refuse_other_states(data["travel_mm"][each * job : each * (job + 1)], ways)
             stream.write(json.dumps({"job": job, "flap_mm": errors}) + "\n")
             stream.flush()
             found[job] = errors
     return np.concatenate([found[job] for job in sorted(found)]).astype(float)
+
+
+def _refuse_other_states(there: NDArray[np.float32], ways: Sequence[float]) -> None:
+    if not np.allclose(there, ways, rtol=SAME_STATE, equal_nan=True):
+        raise ConfigError(
+            "the states of this data set can't be made again: the simulator, its rounding on this machine or how lines "
+            "are drawn has changed since, so picks would be compared in different states; collect the data set anew"
+        )
 
 
 def _kept(path: Path) -> Iterator[tuple[int, list[float | None]]]:
@@ -100,10 +119,14 @@ def _kept(path: Path) -> Iterator[tuple[int, list[float | None]]]:
         yield record["job"], record["flap_mm"]
 
 
-def _fold_job(interaction: Interaction, contestant: Contestant, job: int) -> list[float | None]:
-    """The policy's error [mm] in each state of a job; doing nothing's where it refuses, None where it diverged."""
-    policy, errors = contestant.create(), []
+def _fold_job(interaction: Interaction, contestant: Contestant, job: int) -> tuple[list[float | None], list[float]]:
+    """The policy's error in each state of a job, and the flap's way there, which tells states apart [mm].
+
+    Where the policy refuses, the error is that of doing nothing; None where the cloth diverged.
+    """
+    policy, errors, ways = contestant.create(), [], []
     for simulator, segmenter, situation in situations(interaction, job):
+        ways.append(situation.expectation.travel_mm)
         try:
             action = policy.act(situation.line.line, situation.scene, situation.rng)
         except PlanError:
@@ -111,71 +134,7 @@ def _fold_job(interaction: Interaction, contestant: Contestant, job: int) -> lis
             continue
         outcome, _ = execute(simulator, segmenter, situation, action)
         errors.append(None if outcome is None else outcome.flap_mm)
-    return errors
-
-
-def _correlation_table(data: Dataset, contestants: Sequence[Contestant]) -> list[str]:
-    rows = ["| learned map | states | picks | particles: rank correlation, median | quartiles | contour | quartiles |"]
-    rows.append("|---|---|---|---|---|---|---|")
-    for one in contestants:
-        policy = one.create()
-        if isinstance(policy, CoupledActionMap):
-            rows.append(_correlation_row(one.text, data, policy))
-    return rows if len(rows) > 2 else []
-
-
-def _correlation_row(name: str, data: Dataset, policy: CoupledActionMap) -> str:
-    cells, picks, used = [], [], 0
-    for reward in ("particles", "contour"):
-        found = []
-        for state, trials in _trials_by_state(data):
-            points, values = policy.action_map(data.line(state), data.scene(state))
-            at = [int(np.argmin(((points - first) ** 2).sum(1))) for first in data["first"][trials]]
-            found.append(rank_correlation(values[at], data.reward(reward)[trials]))
-            picks.append(len(trials))
-        low, median, high = np.nanpercentile(found, (25, 50, 75))
-        used = int(np.isfinite(found).sum())
-        cells += [f"{median:.3f}", f"{low:.2f} to {high:.2f}"]
-    return f"| {name} | {used} | {min(picks)}-{max(picks)} | " + " | ".join(cells) + " |"
-
-
-def _trials_by_state(data: Dataset) -> Iterator[tuple[int, NDArray[np.int64]]]:
-    trials = data.of_recipes("uniform")
-    for state in range(data.states):
-        yield state, trials[data["trial_state"][trials] == state]
-
-
-def _error_table(data: Dataset, errors: Mapping[str, NDArray[np.float64]]) -> list[str]:
-    """Errors, regret against the best known fold of each state, and the paired difference to the first policy."""
-    tried = [data["flap_mm"][trials].astype(float) for _, trials in _trials_by_state(data)]
-    least = np.array([found.min() for found in tried])
-    best = np.nanmin(np.stack([least, *errors.values()]), axis=0)
-    columns = {RANDOM: np.array([found.mean() for found in tried]), **errors, BEST: best}
-    first = next(iter(errors))
-    rows = [
-        f"| pick | n | error [mm] | median | p90 | on flat cloth | on folded cloth | regret [mm] | less {first} [mm] |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    flat = data["folds_before"] == 0
-    for name, values in columns.items():
-        sound = values[np.isfinite(values)]
-        cells = [
-            name,
-            str(len(sound)),
-            _interval(estimate(values)),
-            f"{np.median(sound):.1f}",
-            f"{np.percentile(sound, 90):.1f}",
-            f"{np.nanmean(values[flat]):.1f}",
-            f"{np.nanmean(values[~flat]):.1f}",
-            _interval(estimate(values - best)),
-            _interval(estimate(values - errors[first])),
-        ]
-        rows.append("| " + " | ".join(cells) + " |")
-    return rows
-
-
-def _interval(found: Estimate) -> str:
-    return f"{found.mean:.1f} [{found.low:.1f}, {found.high:.1f}]"
+    return errors, ways
 
 
 if __name__ == "__main__":
