@@ -15,17 +15,18 @@ weights; then draw. Paths in the study are those given here, relative to where o
 
 Each drawing is a PNG, and a Markdown table on the standard output. ± is the standard deviation over trainings, with
 n - 1; it says how much the seed matters and nothing about which garments were drawn. For that the tables have a 95 %
-bootstrap interval over garments, whose episodes are kept together, of the success averaged over trainings. Of a study
+bootstrap interval over garments, whose episodes are kept together, of the score averaged over trainings. Of a study
 that is not finished only the episodes count that all its variants have. Choosing an epoch by these curves and reporting
 its success on the same garments would be tuning on them. With fewer folds as many epochs are fewer steps, and the last
 tenth of the garments, which is held out, is another one: compare data sizes by what is evaluated, not by their logs.
+Where nearly every fold succeeds, ``--score moved-part`` tells more apart.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -44,51 +45,62 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["Successes", "main", "sizes_figure", "sizes_table", "training_figure", "training_table"]
+__all__ = ["Scores", "main", "sizes_figure", "sizes_table", "training_figure", "training_table"]
 
 Floats = NDArray[np.float64]
+Record = Mapping[str, Any]
+Episode = tuple[str, int, str, int]
+"""Kind and seed of the garment, task, wording."""
 
 ALL = "all"
+SCORES: Mapping[str, tuple[str, int, Callable[[Record], float | None]]] = {
+    "success": ("success %", 1, lambda record: 100.0 * record["success"]["polyfold"]),
+    "moved-part": ("moved part [mm]", 1, lambda record: record["metrics"]["moved-part"]),
+    "mppe": ("MPPE [mm]", 1, lambda record: record["metrics"]["mppe"]),
+    "miou": ("mIoU", 3, lambda record: record["metrics"]["miou"]),
+}
+"""What can be drawn: its label, digits after the point, and how an episode's record says it."""
+
 ROWS = 10
 """Rows of the table of a training that was not evaluated."""
 
 
-class Successes:
-    """Success of the variants of a study on the episodes that all of them have.
+class Scores:
+    """What the variants of a study scored on the episodes that all of them have.
 
     Args:
         results: of a study by ``curves study``.
+        score: one of :data:`SCORES`.
 
     Raises:
         ConfigError: if nothing in it was learned, or no episode is there for every variant yet.
     """
 
-    def __init__(self, results: Results) -> None:
-        found = {variant: {_episode(r): r for r in results.of(variant)} for variant in results.study.variants}
+    def __init__(self, results: Results, score: str = "success") -> None:
+        self.label, self.digits, of = SCORES[score]
+        found = {variant: _scored(results.of(variant), of) for variant in results.study.variants}
         self.learned = [point for point in map(learned, found) if point is not None]
-        shared = set.intersection(*(set(records) for records in found.values()))
         if not self.learned:
             raise ConfigError(f"nothing in the study {results.study.name!r} was learned; make it with `curves study`")
-        if not shared:
+        self.episodes = sorted(set.intersection(*(set(scores) for scores in found.values())))
+        if not self.episodes:
             raise ConfigError(f"no episode of {results.study.name!r} is there for every variant yet; evaluate the rest")
-        self.episodes = sorted(shared)
-        self.kinds = [*results.kinds(), ALL]
+        self.kinds = [*(kind for kind in results.kinds() if any(kind == e[0] for e in self.episodes)), ALL]
         self.others = [variant for variant in found if learned(variant) is None]
         self._values = {
-            variant: np.array([100.0 * records[episode]["success"]["polyfold"] for episode in self.episodes])
-            for variant, records in found.items()
+            variant: np.array([scores[episode] for episode in self.episodes]) for variant, scores in found.items()
         }
 
     def mean(self, variant: str, kind: str = ALL) -> float:
-        """Success [%] of a variant."""
+        """Mean score of a variant."""
         return float(self._values[variant][self._of(kind)].mean())
 
     def over_runs(self, points: Sequence[Learned], kind: str = ALL) -> Floats:
-        """Success [%] of each of some trainings, shape (runs,)."""
+        """Mean score of each of some trainings, shape (runs,)."""
         return np.array([self.mean(point.variant, kind) for point in points])
 
     def over_garments(self, variants: Sequence[str]) -> Estimate:
-        """Success [%], the mean of some variants, with an interval from drawing garments."""
+        """Score, the mean of some variants, with an interval from drawing garments."""
         values = np.mean([self._values[variant] for variant in variants], axis=0)
         garments: dict[tuple[str, int], list[float]] = {}
         for (kind, seed, *_), value in zip(self.episodes, values, strict=True):
@@ -99,8 +111,10 @@ class Successes:
         return np.array([kind in (ALL, episode[0]) for episode in self.episodes])
 
 
-def _episode(record: Mapping[str, Any]) -> tuple[str, int, str, int]:
-    return record["garment"], record["garment_seed"], record["task"], record["wording"]
+def _scored(records: Sequence[Record], of: Callable[[Record], float | None]) -> dict[Episode, float]:
+    """Scores of the episodes that have one."""
+    scores = {(r["garment"], r["garment_seed"], r["task"], r["wording"]): of(r) for r in records}
+    return {episode: float(score) for episode, score in scores.items() if score is not None}
 
 
 def _metric(runs: Sequence[TrainingRun], name: str) -> Floats:
@@ -111,7 +125,7 @@ def _metric(runs: Sequence[TrainingRun], name: str) -> Floats:
     return np.array([[entry[name] for entry in run.metrics[:epochs]] for run in runs])
 
 
-def _by_epoch(found: Successes) -> dict[int, list[Learned]]:
+def _by_epoch(found: Scores) -> dict[int, list[Learned]]:
     """The trainings evaluated after each epoch, one data size."""
     if len({point.folds for point in found.learned}) > 1:
         raise ConfigError("the evaluation has several data sizes; draw it with `curves sizes`, or evaluate one of them")
@@ -119,7 +133,7 @@ def _by_epoch(found: Successes) -> dict[int, list[Learned]]:
     return {epoch: [point for point in found.learned if point.epoch == epoch] for epoch in epochs}
 
 
-def _by_folds(found: Successes) -> dict[int, list[Learned]]:
+def _by_folds(found: Scores) -> dict[int, list[Learned]]:
     """The trainings on each number of folds, each after its last epoch."""
     last: dict[tuple[int, int], Learned] = {}
     for point in sorted(found.learned):
@@ -128,8 +142,8 @@ def _by_folds(found: Successes) -> dict[int, list[Learned]]:
     return {size: [point for (folds, _), point in last.items() if folds == size] for size in sizes}
 
 
-def training_table(runs: Sequence[TrainingRun], found: Successes | None = None) -> Table:
-    """Loss and rank correlation on held-out states of trainings by epoch and, once evaluated, success.
+def training_table(runs: Sequence[TrainingRun], found: Scores | None = None) -> Table:
+    """Loss and rank correlation on held-out states of trainings by epoch and, once evaluated, a score.
 
     Without an evaluation every so many epochs make a row.
     """
@@ -139,51 +153,51 @@ def training_table(runs: Sequence[TrainingRun], found: Successes | None = None) 
     epochs = list(points) or sorted({round(epoch) for epoch in np.linspace(1, done, min(ROWS, done))})
     rows = []
     for epoch in epochs:
-        logged = [_spread(values[:, epoch - 1], digits=3) if epoch <= done else "–" for values in (loss, correlation)]
-        rows.append([str(epoch), *logged, *(_success_cells(found, points[epoch]) if found else [])])
-    headers = ["epoch", "loss", "rank correlation", *(_success_headers(found) if found else [])]
+        logged = [_spread(values[:, epoch - 1], 3) if epoch <= done else "–" for values in (loss, correlation)]
+        rows.append([str(epoch), *logged, *(_score_cells(found, points[epoch]) if found else [])])
+    headers = ["epoch", "loss", "rank correlation", *(_score_headers(found) if found else [])]
     rows += [] if found is None else [[other, "–", "–", *_other_cells(found, other)] for other in found.others]
-    return Table(headers, rows, f"Mean ± standard deviation over {len(runs)} trainings.{_note(found)}")
+    return Table(headers, rows, f"Mean ± standard deviation over trainings (n = {len(runs)}).{_note(found)}")
 
 
-def sizes_table(found: Successes) -> Table:
-    """Success by the number of folds that were learned from, by kind of garment, beside what learns nothing."""
-    rows = [[str(folds), *_success_cells(found, points)] for folds, points in _by_folds(found).items()]
+def sizes_table(found: Scores) -> Table:
+    """A score by the number of folds that were learned from, by kind of garment, beside what learns nothing."""
+    rows = [[str(folds), *_score_cells(found, points)] for folds, points in _by_folds(found).items()]
     rows += [[other, *_other_cells(found, other)] for other in found.others]
     note = f"Mean ± standard deviation over trainings, each after its last epoch.{_note(found)}"
-    return Table(["folds", *_success_headers(found)], rows, note)
+    return Table(["folds", *_score_headers(found)], rows, note)
 
 
-def _success_headers(found: Successes) -> list[str]:
-    return ["trainings", *(f"{kind}, success %" for kind in found.kinds), "95 % over garments"]
+def _score_headers(found: Scores) -> list[str]:
+    return ["trainings", *(f"{kind}, {found.label}" for kind in found.kinds), "95 % over garments"]
 
 
-def _success_cells(found: Successes, points: Sequence[Learned]) -> list[str]:
-    spreads = [_spread(found.over_runs(points, kind)) for kind in found.kinds]
-    return [str(len(points)), *spreads, shown(found.over_garments([point.variant for point in points]))]
+def _score_cells(found: Scores, points: Sequence[Learned]) -> list[str]:
+    spreads = [_spread(found.over_runs(points, kind), found.digits) for kind in found.kinds]
+    return [str(len(points)), *spreads, shown(found.over_garments([point.variant for point in points]), found.digits)]
 
 
-def _other_cells(found: Successes, variant: str) -> list[str]:
-    means = [f"{found.mean(variant, kind):.1f}" for kind in found.kinds]
-    return ["–", *means, shown(found.over_garments([variant]))]
+def _other_cells(found: Scores, variant: str) -> list[str]:
+    means = [f"{found.mean(variant, kind):.{found.digits}f}" for kind in found.kinds]
+    return ["–", *means, shown(found.over_garments([variant]), found.digits)]
 
 
-def _spread(values: Floats, digits: int = 1) -> str:
+def _spread(values: Floats, digits: int) -> str:
     """Mean ± standard deviation; the value alone if there is one."""
     deviation = f" ± {values.std(ddof=1):.{digits}f}" if len(values) > 1 else ""
     return f"{values.mean():.{digits}f}{deviation}"
 
 
-def _note(found: Successes | None) -> str:
+def _note(found: Scores | None) -> str:
     if found is None:
         return ""
     garments = len({episode[:2] for episode in found.episodes})
     tasks = len({episode[2] for episode in found.episodes})
-    return f" Success on the same {len(found.episodes)} episodes each: {tasks} tasks, {garments} garments."
+    return f" All fold the same {len(found.episodes)} episodes: {tasks} tasks, {garments} garments."
 
 
-def training_figure(runs: Sequence[TrainingRun], found: Successes | None = None) -> Figure:
-    """Loss and rank correlation over epochs above, success below once evaluated: mean and standard deviation."""
+def training_figure(runs: Sequence[TrainingRun], found: Scores | None = None) -> Figure:
+    """Loss and rank correlation over epochs above, a score below once evaluated: mean and standard deviation."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(6.4, 5.6 if found else 3.0), layout="constrained")
@@ -198,36 +212,36 @@ def training_figure(runs: Sequence[TrainingRun], found: Successes | None = None)
     right.spines["top"].set_visible(False)
     if found:
         by_epoch = _by_epoch(found)
-        _draw_success(panels[1], by_epoch, found, ALL)
-        panels[1].set_ylabel("success %")
-        panels[1].legend(frameon=False, fontsize=8, loc="lower right")
+        _draw_scores(panels[1], by_epoch, found, ALL)
+        panels[1].set_ylabel(found.label)
+        panels[1].legend(frameon=False, fontsize=8, loc="best")
     panels[-1].set_xlabel("epoch")
-    panels[0].set_title(f"{len(runs)} trainings: mean and standard deviation", fontsize=10)
+    panels[0].set_title(f"mean and standard deviation over trainings, n = {len(runs)}", fontsize=10)
     return figure
 
 
-def sizes_figure(found: Successes) -> Figure:
-    """Success over the number of folds that were learned from, a panel for each kind of garment and one for all."""
+def sizes_figure(found: Scores) -> Figure:
+    """A score over the number of folds that were learned from, a panel for each kind of garment and one for all."""
     from matplotlib.figure import Figure
 
     sizes = _by_folds(found)
     figure = Figure(figsize=(1.0 + 2.1 * len(found.kinds), 2.9), layout="constrained")
     panels = figure.subplots(1, len(found.kinds), sharey=True, squeeze=False)[0]
     for axes, kind in zip(panels, found.kinds, strict=True):
-        _draw_success(axes, sizes, found, kind)
+        _draw_scores(axes, sizes, found, kind)
         axes.set_title(kind, fontsize=10)
         axes.set_xscale("log")
         axes.set_xticks(list(sizes), [f"{folds:,}" for folds in sizes], rotation=45, fontsize=8)
         axes.minorticks_off()
-    panels[0].set_ylabel("success %")
-    panels[-1].legend(frameon=False, fontsize=8, loc="lower right")
+    panels[0].set_ylabel(found.label)
+    panels[-1].legend(frameon=False, fontsize=8, loc="best")
     figure.supxlabel("folds learned from", fontsize=10)
     return figure
 
 
-def _draw_success(axes: Axes, points: Mapping[int, Sequence[Learned]], found: Successes, kind: str) -> None:
+def _draw_scores(axes: Axes, points: Mapping[int, Sequence[Learned]], found: Scores, kind: str) -> None:
     values = [found.over_runs(some, kind) for some in points.values()]
-    means, spans = zip(*[(v.mean(), v.std(ddof=1) if len(v) > 1 else 0.0) for v in values], strict=True)
+    means, spans = zip(*[(v.mean(), v.std(ddof=1) if len(v) > 1 else np.nan) for v in values], strict=True)
     axes.errorbar(
         list(points), means, yerr=spans, color=PALETTE[2], marker="o", ms=4, capsize=3, lw=1.5, label="learned"
     )
@@ -282,10 +296,12 @@ def _parser() -> argparse.ArgumentParser:
     training.add_argument("--evaluation", type=Path, metavar="DIR", help="run directory of the study")
     training.add_argument("--out", type=Path, default=Path("training.png"), metavar="PNG", help="default: training.png")
     training.set_defaults(run=_draw_training)
+    training.add_argument("--score", choices=list(SCORES), default="success", help="default: success")
     sizes = verbs.add_parser("sizes", help="success by data size (Fig. 8)")
     sizes.add_argument("evaluation", type=Path, metavar="DIR", help="run directory of the study")
     sizes.add_argument("--out", type=Path, default=Path("sizes.png"), metavar="PNG", help="default: sizes.png")
     sizes.set_defaults(run=_draw_sizes)
+    sizes.add_argument("--score", choices=list(SCORES), default="success", help="default: success")
     return parser
 
 
@@ -304,13 +320,13 @@ def _print_study(options: argparse.Namespace) -> None:
 
 def _draw_training(options: argparse.Namespace) -> None:
     runs = [read_run(path) for path in options.runs]
-    found = None if options.evaluation is None else Successes(open_results(options.evaluation))
+    found = None if options.evaluation is None else Scores(open_results(options.evaluation), options.score)
     _save(training_figure(runs, found), options.out)
     print(training_table(runs, found).markdown())
 
 
 def _draw_sizes(options: argparse.Namespace) -> None:
-    found = Successes(open_results(options.evaluation))
+    found = Scores(open_results(options.evaluation), options.score)
     _save(sizes_figure(found), options.out)
     print(sizes_table(found).markdown())
 

@@ -7,7 +7,7 @@ from fnmatch import fnmatch
 import numpy as np
 import pytest
 from polyfold_fgpnp import curves
-from polyfold_fgpnp.curves import Successes, sizes_table, training_table
+from polyfold_fgpnp.curves import Scores, sizes_table, training_table
 from polyfold_fgpnp.runs import Learned, few_tasks, learned, read_run
 
 from polyfold.errors import ConfigError
@@ -45,7 +45,8 @@ def evaluated(folder, study, wins, garments=(0, 1, 2, 3)):
     for variant, task, seed in itertools.product(study["variants"], study["tasks"], garments):
         kind = task.partition("-")[0]
         record = {"variant": variant, "task": task, "garment": kind, "garment_seed": seed, "wording": 0}
-        record["success"] = {"polyfold": bool(wins(variant, kind, seed))}
+        won = bool(wins(variant, kind, seed))
+        record |= {"success": {"polyfold": won}, "metrics": {"moved-part": 5.0 if won else 50.0}}
         run.append(f"{variant}/{task}/{seed}/0", record)
     return folder
 
@@ -125,7 +126,7 @@ def test_the_training_curve_is_mean_and_deviation_over_seeds(tmp_path, capsys):
     assert cells(text, 2)[:6] == ["2", "0.600 ± 0.141", "0.380 ± 0.028", "2", "100.0 ± 0.0", "0.0 ± 0.0"]
     assert cells(text, 4)[3:7] == ["2", "87.5 ± 17.7", "87.5 ± 17.7", "87.5 ± 17.7"]
     assert cells(text, "caso")[4:7] == ["100.0", "100.0", "100.0"]
-    assert "the same 8 episodes each: 2 tasks, 8 garments" in text
+    assert "the same 8 episodes: 2 tasks, 8 garments" in text
     assert png.stat().st_size > 10_000
     assert len(training_table([read_run(run) for run in runs]).rows) == EPOCHS
 
@@ -140,6 +141,11 @@ def test_data_sizes_are_compared_after_the_last_epoch(tmp_path, capsys):
     assert cells(text, 2500)[1:] == ["1", "0.0", "0.0", "0.0", "0.0 [0.0, 0.0]"]
     assert cells(text, 10000)[1:] == ["1", "100.0", "100.0", "100.0", "100.0 [100.0, 100.0]"]
     assert (tmp_path / "sizes.png").stat().st_size > 10_000
+    assert curves.main(["sizes", str(out), "--score", "moved-part", "--out", str(tmp_path / "sizes.png")]) == 0
+    text = capsys.readouterr().out
+    assert "| all, moved part [mm] |" in text
+    assert cells(text, 10000)[4] == "5.0"
+    assert cells(text, "caso")[4] == "50.0"
     run = training(tmp_path / "s0", 0)
     assert curves.main(["training", str(run), "--evaluation", str(out)]) == 1
     assert "several data sizes" in capsys.readouterr().err
@@ -151,7 +157,7 @@ def test_only_episodes_count_that_every_variant_has(tmp_path):
     run = RunDirectory(out, {"study": Study(**made).model_dump(mode="json")})
     ahead = {"variant": "caso", "task": TASKS[0], "garment": "square", "garment_seed": 1, "wording": 0}
     run.append("ahead", {**ahead, "success": {"polyfold": False}})
-    found = Successes(open_results(out))
+    found = Scores(open_results(out))
     assert len(found.episodes) == 2
     assert found.mean("caso") == 100.0
 
@@ -159,6 +165,6 @@ def test_only_episodes_count_that_every_variant_has(tmp_path):
 def test_the_interval_draws_garments_and_not_episodes(tmp_path):
     many = {**study([Learned(10000, 0, 4)]), "tasks": tuple(few_tasks(99))}
     out = evaluated(tmp_path / "evaluation", many, lambda variant, kind, seed: seed % 2)
-    last = sizes_table(Successes(open_results(out))).rows[0][-1]
+    last = sizes_table(Scores(open_results(out))).rows[0][-1]
     low, high = map(float, last.partition("[")[2].rstrip("]").split(", "))
     assert high - low > 30, "16 garments, half of which always fail: 280 independent episodes would give 12"
