@@ -41,6 +41,7 @@ class TrainingConfig(BaseModel):
     Snapshots are the weights after some epochs, for learning curves. They come from one training whose learning rate
     falls along a cosine, so early ones are noisier than the end of a training of that length. They change nothing else:
     neither the final weights, nor what these say they were trained from, nor which folder a training belongs to.
+    A training that is gone on with has no snapshots of epochs that were over before they were asked for.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
