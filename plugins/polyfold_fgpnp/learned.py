@@ -152,7 +152,7 @@ class CoupledActionMap(LearnedPolicy):
         if self._network.config.variant == "csam":
             return region.points, None, self._values(region, scene)[0]
         points = _thinned(region.points)
-        partners = np.array([self._partner(region, point) for point in points])
+        partners = self._partner(region, points)
         return points, partners, self._pair_values(region, scene, points, partners)
 
     def _partner(self, region: FoldRegion, first: Floats) -> Floats:

@@ -72,6 +72,7 @@ def load_weights(path: str | Path, *variants: str) -> tuple[ValueNetwork, Proven
         ConfigError: if there is no such file, it is no such file, its hashes do not match, or it is another variant.
     """
     from safetensors import SafetensorError, safe_open
+    from torch import channels_last
 
     from .networks import NetworkConfig, ValueNetwork
 
@@ -96,7 +97,7 @@ def load_weights(path: str | Path, *variants: str) -> tuple[ValueNetwork, Proven
         raise ConfigError(f"{path} holds weights for {config.variant}, not for {' or '.join(variants)}; give others")
     network = ValueNetwork(config)
     network.load_state_dict(tensors)
-    return network.eval(), found
+    return network.eval().to(memory_format=channels_last), found
 
 
 def _hash(tensors: Mapping[str, Tensor]) -> str:
