@@ -39,7 +39,7 @@ class Collect:
         )
         parser.add_argument("--mix", metavar="RECIPE=COUNT,...", help="picks tried from every state, by recipe")
         parser.add_argument(
-            "--weights", type=Path, metavar="FILE", help="network of csam or pair that the recipe chosen asks"
+            "--weights", type=Path, metavar="FILE", help="network (csam or pair) that the recipe chosen asks"
         )
         parser.add_argument("--seed", type=int, default=0, help="of everything random (default: 0)")
 

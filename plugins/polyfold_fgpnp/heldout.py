@@ -29,6 +29,7 @@ from .dataset import Dataset, load_dataset
 from .interaction import LINES_PER_STAGE, Interaction, execute, situations
 from .learned import CoupledActionMap
 from .ranks import rank_correlation
+from .weights import weights_file
 from .workers import in_processes
 
 __all__ = ["main"]
@@ -51,7 +52,7 @@ class Contestant:
     def file(self) -> str:
         """Name of the file that keeps its results: other weights, another file."""
         name, _, weights = self.text.partition("=")
-        return f"{name}-{hashlib.sha256(Path(weights).read_bytes()).hexdigest()[:12]}" if weights else name
+        return f"{name}-{hashlib.sha256(weights_file(weights).read_bytes()).hexdigest()[:12]}" if weights else name
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -26,6 +26,7 @@ from .learned import CoupledActionMap
 from .lines import LINE_KINDS, PLAUSIBLE, RandomLine, random_line
 from .outcomes import Expectation, Outcome, expect, particle_reward
 from .trials import MIX, RECIPES, Flap, ValueMap, draw_trials
+from .weights import weights_file
 
 __all__ = [
     "LINES_PER_STAGE",
@@ -74,7 +75,8 @@ class Interaction(BaseModel):
         """Hash the file; a description of data that was collected holds the hash alone."""
         if not isinstance(given, Mapping) or given.get("weights") is None:
             return given
-        return {**given, "weights_hash": _hash_of(Path(given["weights"]))}
+        file = weights_file(str(given["weights"]))
+        return {**given, "weights": file, "weights_hash": _hash_of(file)}
 
     @model_validator(mode="after")
     def _weights_go_with_chosen(self) -> Interaction:
@@ -133,14 +135,12 @@ def value_policy(interaction: Interaction) -> CoupledActionMap | None:
 
 @lru_cache(maxsize=1)
 def _trained(weights: Path, expected: str | None) -> CoupledActionMap:
-    if _hash_of(weights) != expected:
+    if not weights.is_file() or _hash_of(weights) != expected:
         raise ConfigError(f"{weights} has changed since this collection began; put the old file back or start anew")
     return CoupledActionMap(CoupledActionMap.Config(weights=str(weights)))
 
 
 def _hash_of(file: Path) -> str:
-    if not file.is_file():
-        raise ConfigError(f"there are no weights {file}; train some with `polyfold train`, or give another path")
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from functools import lru_cache
-from importlib.resources import files
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -40,17 +40,28 @@ CANDIDATES = 72
 """Contour points that a network which values pairs compares."""
 
 
+def _network(name: str, variants: tuple[str, ...]) -> ValueNetwork:
+    """A network by the name or file of its weights, read and checked once until the file changes."""
+    from .weights import weights_file
+
+    file = weights_file(name)
+    found = file.stat()
+    return _read(file.resolve(), (found.st_mtime_ns, found.st_size), variants)
+
+
 @lru_cache(maxsize=8)
-def _network(path: str, variants: tuple[str, ...]) -> ValueNetwork:
+def _read(file: Path, version: tuple[int, int], variants: tuple[str, ...]) -> ValueNetwork:
     from .weights import load_weights
 
-    return load_weights(path, *variants)[0]
+    return load_weights(file, *variants)[0]
 
 
 class LearnedConfig(PickConfig):
     """Parameters that the learned policies share."""
 
-    weights: str = Field("", description="file of `polyfold train`; empty for those that come with the package")
+    weights: str = Field(
+        "", description="file of `polyfold train`, or name of weights of the package; empty for the variant's own"
+    )
 
 
 class LearnedPolicy(ABC):
@@ -65,8 +76,7 @@ class LearnedPolicy(ABC):
 
     def __init__(self, config: LearnedConfig | None = None) -> None:
         self.config = config or self.Config()
-        shipped = files("polyfold_fgpnp") / "weights" / f"{self.variant}.safetensors"
-        self._network = _network(self.config.weights or str(shipped), (self.variant, *self.also))
+        self._network = _network(self.config.weights or self.variant, (self.variant, *self.also))
 
     def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
         """Pick where the network promises most; ``rng`` is not used.
