@@ -214,23 +214,29 @@ def best_pair(region: FoldRegion, gamma: float) -> tuple[Floats, Floats]:
     """
     points = _hull_corners(region)
     score = affordance(region, points[:, None], points[None, :], gamma)
-    first, second = np.unravel_index(_first_best(score.ravel()), score.shape)
+    first, second = np.unravel_index(int(_first_best(score.ravel())), score.shape)
     return points[first], points[second]
 
 
 def second_pick(region: FoldRegion, first: ArrayLike, gamma: float) -> Floats:
-    """The contour pixel, shape (2,), that goes best with a given first pick [px], shape (2,).
+    """The contour pixels, shape (..., 2), that go best with given first picks [px], shape (..., 2).
 
-    It maximises ``S(start, end, first, p) / S_max + gamma l(p) / sqrt(S_max)`` over all contour pixels (paper,
+    Each maximises ``S(start, end, first, p) / S_max + gamma l(p) / sqrt(S_max)`` over all contour pixels (paper,
     Sec. IV-D); as for :func:`best_pair`, corners of their convex hull are enough.
     """
     points = _hull_corners(region)
-    return points[_first_best(affordance(region, first, points, gamma))]
+    return points[_first_best(affordance(region, np.asarray(first, float)[..., None, :], points, gamma))]
 
 
 def coupled_pick(region: FoldRegion, first: ArrayLike, config: PickConfig, share: float = PARTNER_SLIDE) -> Floats:
-    """The :func:`second_pick` of a first pick, moved a little towards it along the contour (see :func:`slide`)."""
-    return slide(region, second_pick(region, first, config.gamma), first, share)
+    """The :func:`second_pick` of first picks, shape (..., 2), moved a little towards them (see :func:`slide`)."""
+    firsts = np.asarray(first, float).reshape(-1, 2)
+    partners = second_pick(region, firsts, config.gamma)
+    corners, chosen = np.unique(partners, axis=0, return_inverse=True)
+    for index, corner in enumerate(corners):  # Many first picks share the few corners.
+        mine = chosen.ravel() == index
+        partners[mine] = slide(region, corner, firsts[mine], share)
+    return partners.reshape(np.shape(first))
 
 
 def _hull_corners(region: FoldRegion) -> Floats:
@@ -239,31 +245,38 @@ def _hull_corners(region: FoldRegion) -> Floats:
     return region.points[np.sort(cv2.convexHull(region.points.astype(np.float32), returnPoints=False).ravel())]
 
 
-def _first_best(scores: Floats) -> int:
-    """Index of the highest score; the first one among scores that differ by rounding only."""
-    return int(np.flatnonzero(scores >= scores.max() - 1e-9)[0])
+def _first_best(scores: Floats) -> NDArray[np.int64]:
+    """Indices of the highest scores along the last axis; the first one among scores that differ by rounding only."""
+    return np.argmax(scores >= scores.max(axis=-1, keepdims=True) - 1e-9, axis=-1)
 
 
 def slide(region: FoldRegion, pick: ArrayLike, towards: ArrayLike, share: float) -> Floats:
-    """Move a contour pixel [px], shape (2,), along the contour towards another one, by a share of their distance.
+    """Move a contour pixel [px], shape (2,), along the contour towards others, by a share of their distance.
+
+    ``towards`` has shape (..., 2), and so has the result.
 
     Cloth that is held at its outermost corners sags between them and the crease; held a little further in, both sides
     of each pick balance. It stops where the lifted part's contour ends.
     """
     pick, towards = np.asarray(pick, float), np.asarray(towards, float)
-    distance = share * float(np.hypot(*(towards - pick)))
+    distances = share * _length(towards - pick)
     at = int(np.argmin(((region.points - pick) ** 2).sum(1)))
     onwards = np.roll(region.points, -at, axis=0)
     backwards = np.roll(onwards[::-1], 1, axis=0)
-    ends = [_walk(path, distance) for path in (onwards, backwards)]
-    return min(ends, key=lambda end: float(np.hypot(*(end - towards))))
+    one, other = (_walk(path, distances) for path in (onwards, backwards))
+    return np.where((_length(one - towards) <= _length(other - towards))[..., None], one, other)
 
 
-def _walk(path: Floats, distance: float) -> Floats:
-    """The point that far along a polyline [px], or the last one before a gap."""
-    steps = np.hypot(*np.diff(path, axis=0).T)
-    beyond = (np.cumsum(steps) > distance + 1e-9) | (steps > GAP_PX)
-    return path[int(np.argmax(beyond))] if beyond.any() else path[-1]
+def _walk(path: Floats, distances: Floats) -> Floats:
+    """The points that far along a polyline [px], or the last one before a gap; distances of shape (...)."""
+    steps = _length(np.diff(path, axis=0))
+    gaps = np.flatnonzero(steps > GAP_PX)
+    last = int(gaps[0]) if len(gaps) else len(steps)
+    return path[np.minimum(np.searchsorted(np.cumsum(steps), distances + 1e-9, side="right"), last)]
+
+
+def _length(vectors: Floats) -> Floats:
+    return np.hypot(vectors[..., 0], vectors[..., 1])
 
 
 def to_action(region: FoldRegion, first: ArrayLike, second: ArrayLike, config: PickConfig) -> Action:

@@ -1,4 +1,4 @@
-"""``polyfold collect``: fold at random in simulation and record how it came out, for training."""
+"""``polyfold collect``: fold in simulation, at random or as a network would, and record how it came out."""
 
 from __future__ import annotations
 
@@ -38,6 +38,9 @@ class Collect:
             "--edge-length", type=float, default=0.018, metavar="M", help="of the mesh (default: 0.018)"
         )
         parser.add_argument("--mix", metavar="RECIPE=COUNT,...", help="picks tried from every state, by recipe")
+        parser.add_argument(
+            "--weights", type=Path, metavar="FILE", help="network (csam or pair) that the recipe chosen asks"
+        )
         parser.add_argument("--seed", type=int, default=0, help="of everything random (default: 0)")
 
     @staticmethod
@@ -58,6 +61,7 @@ class Collect:
             edge_length=arguments.edge_length,
             mix=parse_mix(arguments.mix) if arguments.mix else dict(MIX),
             seed=arguments.seed,
+            weights=arguments.weights,
         )
         try:
             found = collect(interaction, arguments.folds, arguments.out, arguments.workers)
@@ -84,14 +88,15 @@ def collect(
         progress: show a progress bar.
 
     Raises:
-        ConfigError: if the folder holds a data set with other parameters.
+        ConfigError: if the folder holds a data set with other parameters, or the weights do not serve.
     """
     from tqdm import tqdm
 
     from .dataset import DatasetFolder
-    from .interaction import explore, trials_per_job
+    from .interaction import explore, trials_per_job, value_policy
     from .workers import in_processes
 
+    value_policy(interaction)  # Weights that do not serve are refused before there is a folder that names them.
     folder = DatasetFolder(out, interaction.model_dump(mode="json"))
     each = trials_per_job(interaction.mix)
     total = -(-folds // each)

@@ -1,4 +1,4 @@
-"""The data set of random folds: one folder with ``dataset.json`` and shards, written by ``polyfold collect``.
+"""The data set of folds: one folder with ``dataset.json`` and shards, written by ``polyfold collect``.
 
 ``dataset.json`` holds the schema version, the parameters, the counts and, once complete, a hash over all shards.
 A shard ``shards/00042.npz`` (no pickle) holds what one job found. Per state, shape (S, ...):

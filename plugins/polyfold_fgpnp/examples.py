@@ -26,7 +26,7 @@ TRIALS_OF = {
     "vertex-learned": ("vertex",),
     "1sam": ("single",),
     "2sam": ("uniform", "extreme", "slid", "pair"),
-    "pair": ("uniform", "extreme", "slid", "pair", "single", "vertex"),
+    "pair": ("uniform", "extreme", "slid", "pair", "single", "vertex", "chosen"),
 }
 """Recipes whose trials teach a variant."""
 

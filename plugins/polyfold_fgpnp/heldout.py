@@ -18,7 +18,6 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +31,7 @@ from .dataset import Dataset, load_dataset
 from .heldout_tables import correlation_table, regret_table
 from .interaction import LINES_PER_STAGE, Interaction, execute, situations
 from .learned import CoupledActionMap, LearnedPolicy
+from .weights import weights_file
 from .workers import in_processes
 
 __all__ = ["main"]
@@ -58,8 +58,8 @@ class Contestant:
         cls = plugins.component_class("policies", name)
         if not weights and not issubclass(cls, LearnedPolicy):
             return name
-        content = Path(weights) if weights else files("polyfold_fgpnp") / "weights" / f"{cls.variant}.safetensors"
-        return f"{name}-{hashlib.sha256(content.read_bytes()).hexdigest()[:12]}"
+        content = weights_file(weights or cls.variant).read_bytes()
+        return f"{name}-{hashlib.sha256(content).hexdigest()[:12]}"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

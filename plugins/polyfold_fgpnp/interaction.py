@@ -1,18 +1,20 @@
-"""Random interaction: states of a garment, flat and already folded, and the outcome of many picks from each."""
+"""Interaction: states of a garment, flat and already folded at random, and the outcome of many picks from each."""
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from polyfold import plugins
-from polyfold.errors import GroundingError, PlanError, SimulationError
+from polyfold.errors import ConfigError, GroundingError, PlanError, SimulationError
 from polyfold.garments import Garment
 from polyfold.geometry import contour_of
 from polyfold.interfaces import Segmenter, Simulator
@@ -20,11 +22,22 @@ from polyfold.types import Action, FoldLine, Observation, Scene, SimState
 
 from .affordance import FoldRegion, PickConfig, to_action
 from .caso import Caso
+from .learned import CoupledActionMap
 from .lines import LINE_KINDS, PLAUSIBLE, RandomLine, random_line
 from .outcomes import Expectation, Outcome, expect, particle_reward
-from .trials import MIX, RECIPES, draw_trials
+from .trials import MIX, RECIPES, Flap, ValueMap, draw_trials
+from .weights import weights_file
 
-__all__ = ["LINES_PER_STAGE", "Interaction", "Situation", "execute", "explore", "situations", "trials_per_job"]
+__all__ = [
+    "LINES_PER_STAGE",
+    "Interaction",
+    "Situation",
+    "execute",
+    "explore",
+    "situations",
+    "trials_per_job",
+    "value_policy",
+]
 
 LINES_PER_STAGE = (2, 1, 1)
 """Fold lines tried on the flat garment, after one good fold, and after two."""
@@ -37,7 +50,13 @@ ATTEMPTS = 4
 
 
 class Interaction(BaseModel):
-    """Parameters of random interaction; the same ones and the same job give the same data."""
+    """Parameters of interaction; the same ones and the same job give the same data.
+
+    Weights count by their content: ``weights_hash`` follows from ``weights``, whose path is no parameter.
+
+    Raises:
+        ConfigError: if the mix holds the recipe ``chosen`` without weights, weights without it, or there is no file.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -47,6 +66,25 @@ class Interaction(BaseModel):
     mix: Mapping[str, int] = Field(default_factory=lambda: dict(MIX), description="trials of each recipe from a state")
     simulator: Mapping[str, Any] = Field(default_factory=dict, description="parameters of the simulator xpbd")
     seed: int = Field(0, ge=0, description="of everything random")
+    weights: Path | None = Field(None, exclude=True, description="file of a network that the recipe chosen asks")
+    weights_hash: str | None = Field(None, description="SHA-256 of that file")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_hash(cls, given: Any) -> Any:
+        """Hash the file; a description of data that was collected holds the hash alone."""
+        if not isinstance(given, Mapping) or given.get("weights") is None:
+            return given
+        file = weights_file(str(given["weights"]))
+        return {**given, "weights": file, "weights_hash": _hash_of(file)}
+
+    @model_validator(mode="after")
+    def _weights_go_with_chosen(self) -> Interaction:
+        if "chosen" in self.mix and self.weights_hash is None:
+            raise ConfigError("the recipe chosen asks a trained network where to pick; give its file with --weights")
+        if "chosen" not in self.mix and self.weights_hash is not None:
+            raise ConfigError("no recipe of the mix asks the weights; add chosen, such as --mix chosen=3,uniform=1")
+        return self
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +122,26 @@ def _tools(kind: str, seed: int, edge_length: float, simulator: tuple) -> tuple[
         plugins.create("simulators", "xpbd", dict(simulator)),
         plugins.create("segmenters", "colour"),
     )
+
+
+def value_policy(interaction: Interaction) -> CoupledActionMap | None:
+    """The policy whose values the recipe ``chosen`` follows, if there is one; read once in a process.
+
+    Raises:
+        ConfigError: if the weights can't be read, have changed, or are of a network that does not serve.
+    """
+    return _trained(interaction.weights, interaction.weights_hash) if interaction.weights is not None else None
+
+
+@lru_cache(maxsize=1)
+def _trained(weights: Path, expected: str | None) -> CoupledActionMap:
+    if not weights.is_file() or _hash_of(weights) != expected:
+        raise ConfigError(f"{weights} has changed since this collection began; put the old file back or start anew")
+    return CoupledActionMap(CoupledActionMap.Config(weights=str(weights)))
+
+
+def _hash_of(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def trials_per_job(mix: Mapping[str, int]) -> int:
@@ -165,7 +223,8 @@ def explore(interaction: Interaction, job: int) -> dict[str, NDArray[Any]]:
     trials: list[dict[str, Any]] = []
     for simulator, segmenter, situation in situations(interaction, job):
         states.append(_state_row(situation))
-        for trial in draw_trials(situation.region, interaction.mix, situation.rng):
+        flap = Flap(situation.region, _value_map(interaction, situation))
+        for trial in draw_trials(flap, interaction.mix, situation.rng):
             action = to_action(situation.region, trial.first, trial.second, PickConfig())
             outcome, mask = execute(simulator, segmenter, situation, action)
             row = {
@@ -181,6 +240,25 @@ def explore(interaction: Interaction, job: int) -> dict[str, NDArray[Any]]:
             row |= {name: np.float32(value) for name, value in vars(found).items()}
             trials.append(row)
     return _columns(states) | _columns(trials)
+
+
+def _value_map(interaction: Interaction, situation: Situation) -> ValueMap | None:
+    """The network's map of a situation, asked on one thread so that its rounding does not depend on the machine."""
+    policy = value_policy(interaction)
+    if policy is None:
+        return None
+
+    def asked() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        import torch
+
+        threads = torch.get_num_threads()
+        torch.set_num_threads(1)
+        try:
+            return policy.action_map(situation.line.line, situation.scene)
+        finally:
+            torch.set_num_threads(threads)
+
+    return asked
 
 
 def _state_row(situation: Situation) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from functools import lru_cache
-from importlib.resources import files
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -40,17 +40,28 @@ CANDIDATES = 72
 """Contour points that a network which values pairs compares."""
 
 
+def _network(name: str, variants: tuple[str, ...]) -> ValueNetwork:
+    """A network by the name or file of its weights, read and checked once until the file changes."""
+    from .weights import weights_file
+
+    file = weights_file(name)
+    found = file.stat()
+    return _read(file.resolve(), (found.st_mtime_ns, found.st_size), variants)
+
+
 @lru_cache(maxsize=8)
-def _network(path: str, variants: tuple[str, ...]) -> ValueNetwork:
+def _read(file: Path, version: tuple[int, int], variants: tuple[str, ...]) -> ValueNetwork:
     from .weights import load_weights
 
-    return load_weights(path, *variants)[0]
+    return load_weights(file, *variants)[0]
 
 
 class LearnedConfig(PickConfig):
     """Parameters that the learned policies share."""
 
-    weights: str = Field("", description="file of `polyfold train`; empty for those that come with the package")
+    weights: str = Field(
+        "", description="file of `polyfold train`, or name of weights of the package; empty for the variant's own"
+    )
 
 
 class LearnedPolicy(ABC):
@@ -65,8 +76,7 @@ class LearnedPolicy(ABC):
 
     def __init__(self, config: LearnedConfig | None = None) -> None:
         self.config = config or self.Config()
-        shipped = files("polyfold_fgpnp") / "weights" / f"{self.variant}.safetensors"
-        self._network = _network(self.config.weights or str(shipped), (self.variant, *self.also))
+        self._network = _network(self.config.weights or self.variant, (self.variant, *self.also))
 
     def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
         """Pick where the network promises most; ``rng`` is not used.
@@ -92,12 +102,13 @@ class LearnedPolicy(ABC):
         from .networks import sampled
 
         maps, frame = self._maps(region, scene)
-        return _array(sampled(maps, _points(frame, region.points)[None])[0].T)
+        return _array(sampled(maps.mean(0, keepdim=True), _points(frame, region.points)[None])[0].T)
 
     def _maps(self, region: FoldRegion, scene: Scene) -> tuple[Tensor, Frame]:
-        """The network's maps, shape (1, C, H, W), and where the camera's pixels are in them.
+        """The network's maps, shape (M, C, H, W), and where the camera's pixels are in them.
 
-        In the canonical frame they are averaged with those of the mirror image, so that they are symmetric too.
+        In the canonical frame M is 2: the maps of the flap and, turned back, those of its mirror image. Their mean is
+        symmetric too.
         """
         import torch
 
@@ -109,7 +120,8 @@ class LearnedPolicy(ABC):
                 return self._network(image, line), seen.frame
             both = self._network(torch.cat([image, image.flip(2)]), line.expand(2, -1))
             mirrored = both[1:].flip(2)
-            return (both[:1] + (mirrored.flip(1) if self.variant == "2sam" else mirrored)) / 2, seen.frame
+            mirrored = mirrored.flip(1) if self.variant == "2sam" else mirrored
+            return torch.cat([both[:1], mirrored]), seen.frame
 
     def _pair_values(self, region: FoldRegion, scene: Scene, first: Floats, second: Floats) -> Floats:
         """Value of pairs of points [px], each of shape (K, 2), by a network that values pairs: shape (K,)."""
@@ -119,7 +131,8 @@ class LearnedPolicy(ABC):
         at = torch.stack([_points(frame, first), _points(frame, second)], 1)[None]
         geometry = torch.from_numpy(pair_geometry(region, first, second))[None]
         with torch.inference_mode():
-            return _array(self._network.values(maps, at, geometry)[0, :, 0])
+            both = self._network.values(maps, *(one.expand(len(maps), *one.shape[1:]) for one in (at, geometry)))
+            return _array(both[..., 0].mean(0))
 
 
 class CoupledActionMap(LearnedPolicy):
@@ -152,7 +165,7 @@ class CoupledActionMap(LearnedPolicy):
         if self._network.config.variant == "csam":
             return region.points, None, self._values(region, scene)[0]
         points = _thinned(region.points)
-        partners = np.array([self._partner(region, point) for point in points])
+        partners = self._partner(region, points)
         return points, partners, self._pair_values(region, scene, points, partners)
 
     def _partner(self, region: FoldRegion, first: Floats) -> Floats:

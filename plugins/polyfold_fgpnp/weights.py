@@ -1,4 +1,4 @@
-"""Weights on disk: safetensors with what they were trained from, and hashes that loading checks."""
+"""Weights on disk: safetensors with what they were trained from, under one hash that loading checks."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
     from .networks import ValueNetwork
 
-__all__ = ["Provenance", "load_weights", "save_weights"]
+__all__ = ["Provenance", "load_weights", "save_weights", "shipped_weights", "weights_file"]
 
-SCHEMA = "1"
+SCHEMA = "2"
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,28 @@ class Provenance:
         return hashlib.sha256(json.dumps(self.config, sort_keys=True).encode()).hexdigest()
 
 
+def shipped_weights() -> dict[str, Path]:
+    """The weights that come with the package, name -> file."""
+    found = (Path(__file__).parent / "weights").glob("*.safetensors")
+    return {file.stem: file for file in sorted(found, key=lambda file: file.stem)}
+
+
+def weights_file(name: str) -> Path:
+    """The file of the weights with a name: one that comes with the package, or else a path.
+
+    Raises:
+        ConfigError: if it is neither.
+    """
+    shipped = shipped_weights()
+    file = shipped.get(name, Path(name))
+    if not file.is_file():
+        raise ConfigError(
+            f"there are no weights {name!r}: it is no file, and with the package come {', '.join(shipped) or 'none'}; "
+            "give one of these, or train your own with: polyfold train CONFIG.toml --out DIR"
+        )
+    return file
+
+
 def save_weights(path: str | Path, network: ValueNetwork, provenance: Provenance) -> None:
     """Write a network's weights with their provenance, whole or not at all."""
     from safetensors.torch import save_file
@@ -53,8 +75,8 @@ def save_weights(path: str | Path, network: ValueNetwork, provenance: Provenance
         "config_hash": provenance.config_hash,
         "data": json.dumps(provenance.data),
         "labels": json.dumps([provenance.mean, provenance.deviation]),
-        "weights_hash": _hash(tensors),
     }
+    metadata["hash"] = _hash(tensors, metadata)
     part = Path(path).with_suffix(".part")
     save_file(tensors, part, metadata)
     part.chmod(0o644)
@@ -69,9 +91,10 @@ def load_weights(path: str | Path, *variants: str) -> tuple[ValueNetwork, Proven
         variants: one of which the network must be; any if none is given.
 
     Raises:
-        ConfigError: if there is no such file, it is no such file, its hashes do not match, or it is another variant.
+        ConfigError: if there is no such file, it is no such file, its hash does not match, or it is another variant.
     """
     from safetensors import SafetensorError, safe_open
+    from torch import channels_last
 
     from .networks import NetworkConfig, ValueNetwork
 
@@ -84,23 +107,27 @@ def load_weights(path: str | Path, *variants: str) -> tuple[ValueNetwork, Proven
     except SafetensorError as error:
         raise ConfigError(f"{path} can't be read as safetensors ({error}); train or install it again") from error
     if metadata.get("schema") != SCHEMA:
-        raise ConfigError(f"{path} was not written by `polyfold train`, or by another version; train it again")
+        raise ConfigError(
+            f"{path} was not written by `polyfold train`, or by another version; run the same training again, "
+            "which takes what is finished from its checkpoint"
+        )
+    if metadata.pop("hash", None) != _hash(tensors, metadata):
+        raise ConfigError(
+            f"{path} does not match its own hash: it is damaged or was changed; train or install it again"
+        )
     mean, deviation = json.loads(metadata["labels"])
     found = Provenance(json.loads(metadata["config"]), tuple(json.loads(metadata["data"])), mean, deviation)
-    if found.config_hash != metadata["config_hash"] or _hash(tensors) != metadata["weights_hash"]:
-        raise ConfigError(
-            f"{path} does not match its own hashes: it is damaged or was changed; train or install it again"
-        )
     config = NetworkConfig(**found.config["network"])
     if variants and config.variant not in variants:
         raise ConfigError(f"{path} holds weights for {config.variant}, not for {' or '.join(variants)}; give others")
     network = ValueNetwork(config)
     network.load_state_dict(tensors)
-    return network.eval(), found
+    return network.eval().to(memory_format=channels_last), found
 
 
-def _hash(tensors: Mapping[str, Tensor]) -> str:
-    whole = hashlib.sha256()
-    for name in sorted(tensors):
-        whole.update(name.encode() + str(tuple(tensors[name].shape)).encode() + tensors[name].numpy().tobytes())
+def _hash(tensors: Mapping[str, Tensor], metadata: Mapping[str, str]) -> str:
+    """SHA-256 of all that a file says: names, types, shapes and values of its tensors, and its metadata."""
+    whole = hashlib.sha256(json.dumps(metadata, sort_keys=True).encode())
+    for name, tensor in sorted(tensors.items()):
+        whole.update(json.dumps([name, str(tensor.dtype), list(tensor.shape)]).encode() + tensor.numpy().tobytes())
     return whole.hexdigest()

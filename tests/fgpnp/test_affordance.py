@@ -6,8 +6,10 @@ from drawn_scenes import CENTRE, SQUARE, TSHIRT, model_of, near, scene_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from polyfold_fgpnp.affordance import (
+    GAP_PX,
     PickConfig,
     best_pair,
+    coupled_pick,
     fold_region,
     quadrilateral_area,
     second_pick,
@@ -58,6 +60,44 @@ def test_second_pick_is_the_best_partner_of_the_first():
     region = fold_region(FoldLine((200, 350), (200, 50)), scene_of(model_of(SQUARE)))
     assert near([second_pick(region, (100, 300), 0.04)], (100, 100))
     assert near([second_pick(region, (100, 100), 0.04)], (100, 300))
+
+
+def slid_one_by_one(region, pick, towards, share):
+    """Walk from one contour point towards another, step by step in both directions; the end that is nearer."""
+    distance = share * np.hypot(*(towards - pick))
+    start = int(np.argmin(((region.points - pick) ** 2).sum(1)))
+    ends = []
+    for step in (1, -1):
+        at, gone = start, 0.0
+        for _ in range(len(region.points) - 1):
+            onwards = (at + step) % len(region.points)
+            length = np.hypot(*(region.points[onwards] - region.points[at]))
+            if gone + length > distance + 1e-9 or length > GAP_PX:
+                break
+            at, gone = onwards, gone + length
+        ends.append(region.points[at])
+    return min(ends, key=lambda end: np.hypot(*(end - towards)))
+
+
+@given(st.floats(0, 6.28), st.floats(-60, 60), st.floats(0, 0.45), st.sampled_from([SQUARE, TSHIRT]))
+@settings(max_examples=20, deadline=None)
+def test_partners_of_many_picks_are_those_of_each(angle, offset, share, corners):
+    direction = np.array([np.cos(angle), np.sin(angle)])
+    middle = np.array(CENTRE) + offset * np.array([-direction[1], direction[0]])
+    region = fold_region(
+        FoldLine.between(middle - 50 * direction, middle + 50 * direction), scene_of(model_of(corners))
+    )
+    firsts = region.points[::7]
+    together = coupled_pick(region, firsts, PickConfig(), share)
+    line, root = region.fold_line, np.sqrt(region.box_area)
+    for first, partner in zip(firsts, together, strict=True):
+        assert (partner == coupled_pick(region, first, PickConfig(), share)).all()
+        second = second_pick(region, first, PickConfig().gamma)
+        areas = quadrilateral_area(line.start, line.end, first, region.points)
+        scores = areas / region.box_area + PickConfig().gamma * region.distances / root
+        at = int(np.argmin(((region.points - second) ** 2).sum(1)))
+        assert scores[at] == pytest.approx(scores.max(), abs=1e-6)
+        assert (partner == slid_one_by_one(region, second, first, share)).all()
 
 
 def test_region_shrinks_the_line_to_the_lifted_cloth():

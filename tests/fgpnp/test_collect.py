@@ -5,12 +5,17 @@ import shutil
 
 import numpy as np
 import pytest
+import torch
 from few_folds import FOLDS, MIX, interaction
-from polyfold_fgpnp.affordance import fold_region
+from polyfold_fgpnp.affordance import PickConfig, coupled_pick, fold_region
 from polyfold_fgpnp.collect import collect
 from polyfold_fgpnp.dataset import load_dataset
+from polyfold_fgpnp.examples import make_examples
 from polyfold_fgpnp.interaction import execute, explore
-from polyfold_fgpnp.trials import RECIPES, parse_mix
+from polyfold_fgpnp.learned import CoupledActionMap
+from polyfold_fgpnp.networks import NetworkConfig, ValueNetwork
+from polyfold_fgpnp.trials import RECIPES, Flap, draw_trials, parse_mix
+from polyfold_fgpnp.weights import Provenance, save_weights
 
 from polyfold.cli import main
 from polyfold.errors import ConfigError, SimulationError
@@ -122,3 +127,112 @@ def test_wrong_options_are_answered(arguments, message, capsys, tmp_path, monkey
     monkeypatch.chdir(tmp_path)
     assert main(["collect", *arguments]) == 1
     assert message in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def networks(tmp_path_factory):
+    """Files of untrained networks, which value the points of a contour at random."""
+    return {
+        name: untrained(tmp_path_factory.mktemp("networks") / f"{name}.safetensors", variant, seed)
+        for name, variant, seed in (("csam", "csam", 0), ("other", "csam", 1), ("pair", "pair", 0), ("1sam", "1sam", 0))
+    }
+
+
+def untrained(path, variant, seed):
+    torch.manual_seed(seed)
+    network = ValueNetwork(NetworkConfig(variant=variant, base=4, levels=2))
+    torch.nn.init.normal_(network.head.exit.weight if variant == "pair" else network.exit.weight)
+    save_weights(path, network, Provenance({"network": network.config.model_dump()}, (), 0.0, 1.0))
+    return path
+
+
+@pytest.fixture(scope="module")
+def chosen_folder(networks, tmp_path_factory):
+    out = tmp_path_factory.mktemp("chosen")
+    command = ["collect", "--out", str(out), "--weights", str(networks["csam"]), "--mix", "chosen=3,uniform=1"]
+    assert main([*command, "--folds", "1", "--seeds", "2000-2000", "--edge-length", "0.04"]) == 0
+    return out
+
+
+def test_chosen_picks_are_where_the_network_promises_most(chosen_folder, networks):
+    data = load_dataset(chosen_folder)
+    policy = CoupledActionMap(CoupledActionMap.Config(weights=str(networks["csam"])))
+    assert data.states == 4
+    for state in range(data.states):
+        trials = data.of_recipes("chosen")
+        firsts = data["first"][trials[data["trial_state"][trials] == state]]
+        points, values = policy.action_map(data.line(state), data.scene(state))
+        at = [int(np.argmin(np.hypot(*(points - first).T))) for first in firsts]
+        assert len(at) == 3
+        assert values[at[0]] > values.max() - 1e-3 * np.ptp(values), "the first is the best of all"
+        assert (values[at] >= np.quantile(values, 0.7)).all(), "the others are good"
+        apart = np.hypot(*(firsts[:, None] - firsts[None]).transpose(2, 0, 1))[np.triu_indices(3, 1)]
+        assert apart.min() > 0.045 * len(points), "and not the same again"
+        region = fold_region(data.line(state), data.scene(state))
+        partners = data["second"][trials[data["trial_state"][trials] == state]]
+        wanted = [coupled_pick(region, points[i], PickConfig()) for i in at]
+        assert np.allclose(partners, wanted, atol=0.5)
+
+
+def test_the_same_weights_give_the_same_data_wherever_their_file_is_and_others_are_refused(
+    chosen_folder, networks, tmp_path
+):
+    again, moved = tmp_path / "again", tmp_path / "moved.safetensors"
+    shutil.copytree(chosen_folder, again)
+    shutil.copy(networks["csam"], moved)
+    (again / "shards" / "00000.npz").unlink()
+    same = {"seeds": (2000, 2000), "edge_length": 0.04, "mix": {"chosen": 3, "uniform": 1}}
+    found = collect(interaction(**same, weights=moved), 1, again, progress=False)
+    assert found["hash"] == load_dataset(chosen_folder).description["hash"]
+    with pytest.raises(ConfigError, match="weights_hash"):
+        collect(interaction(**same, weights=networks["other"]), 1, again, progress=False)
+
+
+def test_chosen_picks_teach_the_coupled_map_and_pairs_only(chosen_folder):
+    data = load_dataset(chosen_folder)
+    counts = {name: int(make_examples([data], name, "canonical", "particles", "log").valid.sum()) for name in TAUGHT}
+    assert counts == TAUGHT
+    with pytest.raises(ConfigError, match="no data for 1sam"):
+        make_examples([data], "1sam", "canonical", "particles", "log")
+
+
+TAUGHT = {"csam": 16, "pair": 16, "2sam": 4}
+
+
+@pytest.mark.parametrize("variant", ["csam", "pair"])
+@pytest.mark.parametrize("count", [1, 4, 30])
+def test_so_many_chosen_picks_are_drawn_as_asked_and_differ(folds, networks, variant, count):
+    policy = CoupledActionMap(CoupledActionMap.Config(weights=str(networks[variant])))
+    line, scene = folds.line(0), folds.scene(0)
+    flap = Flap(fold_region(line, scene), lambda: policy.action_map(line, scene))
+    drawn = draw_trials(flap, {"chosen": count}, np.random.default_rng(0))
+    assert len({tuple(trial.first) for trial in drawn}) == len(drawn) == count
+    again = draw_trials(flap, {"chosen": count}, np.random.default_rng(0))
+    assert all((one.first == other.first).all() for one, other in zip(drawn, again, strict=True))
+
+
+def test_weights_and_the_recipe_that_asks_them_come_together(networks, tmp_path, capsys):
+    out = ["collect", "--out", str(tmp_path / "new")]
+    for arguments, message in (
+        (["--mix", "chosen=3"], "give its file with --weights"),
+        (["--weights", str(networks["csam"])], "add chosen"),
+        (["--mix", "chosen=3", "--weights", str(tmp_path / "none")], "polyfold train"),
+        (["--mix", "chosen=3", "--weights", str(networks["1sam"])], "holds weights for 1sam, not for csam or pair"),
+    ):
+        assert main([*out, *arguments]) == 1
+        assert message in capsys.readouterr().err
+    assert not (tmp_path / "new").exists(), "a refused collection leaves no folder behind"
+
+
+def test_data_collected_before_there_were_weights_is_still_read_and_resumed(folds_folder, tmp_path):
+    old = tmp_path / "old"
+    shutil.copytree(folds_folder, old)
+    description = json.loads((old / "dataset.json").read_text())
+    del description["parameters"]["weights_hash"]
+    (old / "dataset.json").write_text(json.dumps(description))
+    assert load_dataset(old).folds == FOLDS
+    assert collect(interaction(), FOLDS, old, progress=False)["hash"] == description["hash"]
+
+
+def test_recipes_keep_their_places_in_stored_data():
+    assert list(RECIPES) == ["uniform", "extreme", "slid", "pair", "single", "vertex", "chosen"]

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import torch
 from drawn_scenes import SQUARE, TSHIRT, model_of, scene_of
 from few_folds import MIX
 from polyfold_fgpnp import training
+from polyfold_fgpnp import weights as weights_module
 from polyfold_fgpnp.affordance import fold_region
 from polyfold_fgpnp.examples import TRIALS_OF, label, make_examples
 from polyfold_fgpnp.learned import CoupledActionMap, OneActionMap, PairValue, TwoActionMaps, VertexLearned
@@ -17,7 +19,7 @@ from polyfold_fgpnp.networks import NetworkConfig, ValueNetwork
 from polyfold_fgpnp.pairs import pair_geometry
 from polyfold_fgpnp.train import read_config
 from polyfold_fgpnp.training import TrainingConfig, augmented, train
-from polyfold_fgpnp.weights import load_weights
+from polyfold_fgpnp.weights import load_weights, shipped_weights
 
 from polyfold import plugins
 from polyfold.cli import main
@@ -131,16 +133,20 @@ def test_weights_tell_what_they_were_trained_from(weights, folds):
     assert found.config["network"]["variant"] == "csam"
 
 
-def test_weights_that_were_changed_are_refused(weights, tmp_path):
+def test_a_file_with_one_changed_byte_is_refused_wherever_it_is(weights, tmp_path):
+    content = weights["csam"].read_bytes()
+    header = 8 + int.from_bytes(content[:8], "little")
     damaged = tmp_path / "damaged.safetensors"
-    content = bytearray(weights["csam"].read_bytes())
-    content[-1] ^= 1
-    damaged.write_bytes(content)
-    with pytest.raises(ConfigError, match="hashes"):
-        load_weights(damaged)
+    for place in [*range(0, header, 31), *range(header, len(content), 9973), len(content) - 1]:
+        damaged.write_bytes(content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :])
+        with pytest.raises(ConfigError, match=r"hash|safetensors|not written by"):
+            load_weights(damaged)
+
+
+def test_weights_that_were_changed_are_refused(weights, tmp_path):
     relabelled = tmp_path / "relabelled.safetensors"
     relabelled.write_bytes(weights["csam"].read_bytes().replace(b'\\"epochs\\": 3', b'\\"epochs\\": 4'))
-    with pytest.raises(ConfigError, match="hashes"):
+    with pytest.raises(ConfigError, match="its own hash"):
         load_weights(relabelled)
     with pytest.raises(ConfigError, match="holds weights for csam, not for 1sam"):
         load_weights(weights["csam"], "1sam")
@@ -181,6 +187,64 @@ def test_canonical_maps_are_symmetric_on_a_symmetric_flap(weights):
 
 def test_every_learned_policy_is_registered():
     assert {"csam+caso", "1sam", "2sam", "vertex-learned"} <= set(plugins.names("policies"))
+
+
+@pytest.fixture
+def shipping(weights, tmp_path, monkeypatch):
+    """A package that comes with the weights csam and csam-fine."""
+    package = tmp_path / "package"
+    (package / "weights").mkdir(parents=True)
+    for name in ("csam", "csam-fine"):
+        shutil.copy(weights["csam"], package / "weights" / f"{name}.safetensors")
+    monkeypatch.setattr(weights_module, "__file__", str(package / "weights.py"))
+    return package / "weights"
+
+
+def test_weights_of_the_package_go_by_name(shipping, weights):
+    line, scene = LINES["half"][1], scene_of(model_of(SQUARE))
+    by_file = plugins.create("policies", "csam+caso", {"weights": str(weights["csam"])}).action_map(line, scene)[1]
+    for parameters in ({}, {"weights": "csam"}, {"weights": "csam-fine"}):
+        found = plugins.create("policies", "csam+caso", parameters).action_map(line, scene)[1]
+        assert (found == by_file).all()
+    for name, parameters in (("csam+caso", {"weights": "csam-coarse"}), ("1sam", {})):
+        with pytest.raises(ConfigError, match=r"with the package come csam, csam-fine; .* polyfold train"):
+            plugins.create("policies", name, parameters)
+    with pytest.raises(ConfigError, match="for csam, not for 2sam"):
+        plugins.create("policies", "2sam", {"weights": "csam-fine"})
+
+
+def test_weights_are_read_again_only_when_their_file_has_changed(shipping, weights, monkeypatch):
+    line, scene = LINES["half"][1], scene_of(model_of(SQUARE))
+    before = plugins.create("policies", "csam+caso").action_map(line, scene)
+    with monkeypatch.context() as patch:
+        patch.setattr(weights_module, "load_weights", None)
+        assert (plugins.create("policies", "csam+caso").action_map(line, scene)[1] == before[1]).all()
+    shutil.copy(weights["pair"], shipping / "csam.safetensors")
+    assert len(plugins.create("policies", "csam+caso").action_map(line, scene)[1]) != len(before[1])
+
+
+def test_weights_that_come_with_the_package_are_sound_and_small():
+    for name, file in shipped_weights().items():
+        _, found = load_weights(file)
+        assert file.stat().st_size <= 10_000_000, name
+        assert found.data, f"{name} does not say what it was trained from"
+        assert name not in POLICIES or found.config["network"]["variant"] == name
+
+
+def test_weights_are_in_the_wheel_and_in_the_source_distribution(weights, tmp_path):
+    from hatchling.builders.sdist import SdistBuilder
+    from hatchling.builders.wheel import WheelBuilder
+
+    repository = Path(__file__).parents[2]
+    for name in ("pyproject.toml", ".gitignore", "README.md", "LICENSE"):
+        shutil.copy(repository / name, tmp_path)
+    there = "plugins/polyfold_fgpnp"
+    (tmp_path / there / "weights").mkdir(parents=True)
+    shutil.copy(repository / there / "weights.py", tmp_path / there)
+    shutil.copy(weights["csam"], tmp_path / there / "weights" / "csam.safetensors")
+    for builder, inside in ((WheelBuilder, "polyfold_fgpnp"), (SdistBuilder, there)):
+        found = {file.distribution_path for file in builder(str(tmp_path)).recurse_included_files()}
+        assert {f"{inside}/weights.py", f"{inside}/weights/csam.safetensors"} <= found
 
 
 def test_labels_keep_the_order_and_the_logarithm_spreads_good_folds():
