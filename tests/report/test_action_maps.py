@@ -6,10 +6,12 @@ from PIL import Image
 
 import polyfold
 from polyfold import plugins
+from polyfold.episode import run_episode
 from polyfold.errors import PlanError
 from polyfold.folding import attempt
 from polyfold.report import write_report
 from polyfold.runner import evaluate
+from polyfold.types import Action
 from polyfold.view.style import MAP
 
 SMALL = {"name": "small", "tasks": ("square-corner-bottom_left",), "first_seed": 2000, "edge_length": 0.03}
@@ -102,6 +104,34 @@ def test_picks_that_the_planner_chose_carry_no_values_of_the_policy():
     assert episode.steps
     episode.show()
     assert not ASKED
+
+
+@pytest.mark.parametrize(("holding", "by_policy"), [([], True), ([1], False)], ids=["both miss", "one misses"])
+def test_a_repeated_fold_has_values_only_where_the_policy_chose_again(holding, by_policy):
+    cloth = polyfold.garment("tshirt", seed=2000, edge_length=0.025)
+    episode = run_episode(experiment(), cloth, "fold the hem up to the shoulders", 2000, FirstMisses(holding))
+    first, again = episode.steps[:2]
+    assert again.retry
+    assert first.action_map is not None
+    assert (again.action_map is not None) == by_policy
+
+
+class FirstMisses:
+    """The simulator, but in the first fold only some arms take hold."""
+
+    def __init__(self, holding):
+        self._inner = plugins.create("simulators", "xpbd")
+        self._holding = holding
+
+    def __getattr__(self, name):
+        return getattr(self._inner, name)
+
+    def execute(self, action):
+        holding, self._holding = self._holding, None
+        if holding == []:
+            return self._inner.observe()
+        held = action if holding is None else Action(action.picks[holding], action.places[holding])
+        return self._inner.execute(held)
 
 
 def experiment(**components):
