@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
@@ -13,11 +13,13 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import PlanError
 from polyfold.geometry import contour_of
-from polyfold.interfaces import Goal, Grounding, Planner, Policy, Segmenter
+from polyfold.interfaces import Goal, Grounding, Planner, Policy, Segmenter, action_map_later
 from polyfold.recovery import Attempt, inspect
-from polyfold.types import Action, Decision, FoldLine, Observation, Scene, Subgoal
+from polyfold.types import Action, ActionMap, Decision, FoldLine, Observation, Scene, Subgoal
 
 __all__ = ["PolyFoldAgent"]
+
+_ActionMapLater = Callable[[], ActionMap] | None
 
 
 class PolyFoldAgent:
@@ -98,10 +100,10 @@ class PolyFoldAgent:
             self._pending.pop(0)
         if plan is None:
             return None
-        action, line = self._act(plan, scene)
+        action, line, action_map = self._act(plan, scene)
         self._attempt = Attempt(observation, mask, line, action)
         seconds = {"grounding": grounded - clock, "language": planned - grounded, "policy": _since(planned)}
-        return Decision(action, subgoal, line, scene, seconds)
+        return Decision(action, subgoal, line, scene, seconds, action_map=action_map)
 
     def _can_repeat(self) -> bool:
         return self._config.recover and self._last is not None and self._tries < self._config.retries
@@ -118,25 +120,28 @@ class PolyFoldAgent:
             return None
         looked = time.perf_counter()
         line = motion.line(attempt.line)
-        action = finding.action or self._folded_again(line, last.scene, mask)
+        action, action_map = finding.action, None
         if action is None:
-            return None
+            again = self._folded_again(line, replace(last.scene, mask=mask, contour=contour_of(mask)))
+            if again is None:
+                return None
+            action, action_map = again
         # Line and scene stay those before the fold: that is what the next grounding starts from.
         seconds = {"grounding": looked - clock, "language": 0.0, "policy": _since(looked)}
-        return replace(last, action=action, seconds=seconds, retry=True)
+        return replace(last, action=action, seconds=seconds, retry=True, action_map=action_map)
 
-    def _folded_again(self, line: FoldLine, scene: Scene, mask: NDArray[np.bool_]) -> Action | None:
+    def _folded_again(self, line: FoldLine, scene: Scene) -> tuple[Action, _ActionMapLater] | None:
         """The policy's picks on what is still left of the line; None where it finds nothing to take there."""
         try:
-            return self._policy.act(line, replace(scene, mask=mask, contour=contour_of(mask)), self._rng)
+            return self._policy.act(line, scene, self._rng), action_map_later(self._policy, line, scene)
         except PlanError:
             return None
 
-    def _act(self, plan: FoldLine | Action, scene: Scene) -> tuple[Action, FoldLine]:
+    def _act(self, plan: FoldLine | Action, scene: Scene) -> tuple[Action, FoldLine, _ActionMapLater]:
         if isinstance(plan, FoldLine):
-            return self._policy.act(plan, scene, self._rng), plan
+            return self._policy.act(plan, scene, self._rng), plan, action_map_later(self._policy, plan, scene)
         # A direct planner gives picks and places; the line that explains them is what the next grounding needs.
-        return plan, FoldLine.moving(plan.picks.mean(axis=0), plan.places.mean(axis=0))
+        return plan, FoldLine.moving(plan.picks.mean(axis=0), plan.places.mean(axis=0)), None
 
 
 def _since(clock: float) -> float:

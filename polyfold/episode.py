@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +24,7 @@ from polyfold.guidance import guidance_for
 from polyfold.interfaces import Agent, Goal, Simulator
 from polyfold.tasks import Task
 from polyfold.transcript import Transcript
-from polyfold.types import Action, Decision, FoldLine, Observation, Scene, SimState, Subgoal
+from polyfold.types import Action, ActionMap, Decision, FoldLine, Observation, Scene, SimState, Subgoal
 
 if TYPE_CHECKING:
     from polyfold.ideal import Fidelity
@@ -62,6 +62,7 @@ class Step:
         seconds: time per stage (``grounding``, ``language``, ``policy``, ``execution``) [s].
         after: the true state once the cloth has settled, for metrics.
         retry: whether it repeats the fold before, which was seen to have failed.
+        action_map: computes what the policy thinks of every place to pick; None where it can't say.
     """
 
     index: int
@@ -73,6 +74,7 @@ class Step:
     seconds: dict[str, float]
     after: SimState
     retry: bool = False
+    action_map: Callable[[], ActionMap] | None = None
 
 
 @dataclass(frozen=True)
@@ -307,6 +309,7 @@ def _execute(simulator: Simulator, decision: Decision, seen: Observation, index:
         seconds,
         simulator.state(),
         decision.retry,
+        decision.action_map,
     )
     return step, after
 

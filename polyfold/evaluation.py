@@ -160,6 +160,7 @@ def _record(cell: Cell, entry: Task | OpenTask, episode: Episode, comparison: _C
         "subgoals": [subgoal.text for subgoal in episode.subgoals],
         "steps": len(episode.settled()),
         "retries": sum(step.retry for step in episode.steps),
+        "values_picks": any(step.action_map is not None for step in episode.steps),
         "metrics": {name: _number(value) for name, value in comparison.values.items()},
         "done": done,
         "step_errors_mm": _step_errors(episode, comparison.nearest),

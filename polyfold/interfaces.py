@@ -7,8 +7,9 @@ command line, in TOML and in notebooks, and an instance of it is the constructor
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from polyfold.garments import Garment
 from polyfold.polygon import Template
 from polyfold.scoring import Outcome
-from polyfold.types import Action, Decision, FoldLine, Observation, Scene, SimState, Subgoal
+from polyfold.types import Action, ActionMap, Decision, FoldLine, Observation, Scene, SimState, Subgoal
 
 __all__ = [
     "LLM",
@@ -33,6 +34,8 @@ __all__ = [
     "Reply",
     "Segmenter",
     "Simulator",
+    "ValuesPicks",
+    "action_map_later",
 ]
 
 Message = Mapping[str, Any]
@@ -183,6 +186,26 @@ class Policy(Protocol):
 
     def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
         """Picks on the contour left of the line, places mirrored. Raises PlanError if no cloth lies left of it."""
+
+
+@runtime_checkable
+class ValuesPicks(Protocol):
+    """What a policy may do besides: say how good it takes every place to pick for (paper, Fig. 9).
+
+    Pictures of its folds then show it: filmstrips, the gallery of reports, ``polyfold maps``.
+    """
+
+    def action_map(self, fold_line: FoldLine, scene: Scene) -> ActionMap:
+        """Places to pick [px], shape (N, 2), and their values, shape (N,); higher is better, not finite is not drawn.
+
+        Called only when a picture is made, after the fold, so it must not change what the policy does. Raises
+        PlanError if it has no values for this line; the picture then goes without.
+        """
+
+
+def action_map_later(policy: Policy, fold_line: FoldLine, scene: Scene) -> Callable[[], ActionMap] | None:
+    """For a :class:`Decision`: a function that asks the policy once a picture is made; None if it can't say."""
+    return partial(policy.action_map, fold_line, scene) if isinstance(policy, ValuesPicks) else None
 
 
 @dataclass(frozen=True, eq=False)

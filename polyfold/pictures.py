@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold.errors import PlanError
 from polyfold.geometry import contour_of
 from polyfold.ideal import fold_ideally
+from polyfold.types import ActionMap
 
 if TYPE_CHECKING:
     from polyfold.episode import Episode, Step
 
-__all__ = ["episode_html", "filmstrip_of", "result_caption", "result_of"]
+__all__ = ["action_map_of", "episode_html", "filmstrip_of", "result_caption", "result_of"]
 
 
 def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
@@ -50,7 +52,16 @@ def _frame(step: Step):
     title = step.subgoal.text if step.subgoal else f"fold {step.index + 1}"
     title = f"again: {title}" if step.retry else title
     caption = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
-    return view.Frame(step.observation.rgb, step.scene, step.fold_line, step.action, title, caption)
+    seen = step.observation.rgb
+    return view.Frame(seen, step.scene, step.fold_line, step.action, title, caption, action_map_of(step))
+
+
+def action_map_of(step: Step) -> ActionMap | None:
+    """Places to pick and the policy's values, asked for now; None where the policy has none."""
+    try:
+        return None if step.action_map is None else step.action_map()
+    except PlanError:
+        return None
 
 
 def result_caption(episode: Episode) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.geometry import contour_of
+from polyfold.pictures import action_map_of
 
 if TYPE_CHECKING:
     from polyfold.episode import Episode, Step
@@ -50,7 +51,7 @@ def thumbnail(episode: Episode, wanted: NDArray[np.bool_] | None = None) -> byte
 def _step_panel(step: Step) -> NDArray[np.uint8]:
     from polyfold import view
 
-    return view.overlay(step.observation, None, step.fold_line, step.action)
+    return view.overlay(step.observation, None, step.fold_line, step.action, action_map=action_map_of(step))
 
 
 def _outline(wanted: NDArray[np.bool_] | None) -> NDArray[np.float64] | None:

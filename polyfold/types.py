@@ -6,7 +6,7 @@ x right, y away from the viewer, z up from the table. :class:`Camera` is the onl
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -19,9 +19,12 @@ from polyfold.errors import ActionError
 if TYPE_CHECKING:
     from polyfold.polygon import FoldedModel
 
-__all__ = ["Action", "Camera", "Decision", "FoldLine", "Observation", "Scene", "SimState", "Subgoal"]
+__all__ = ["Action", "ActionMap", "Camera", "Decision", "FoldLine", "Observation", "Scene", "SimState", "Subgoal"]
 
 Floats = NDArray[np.float64]
+
+ActionMap = tuple[Floats, Floats]
+"""Places to pick [px], shape (N, 2), and how good a policy takes each for, shape (N,); higher is better."""
 
 
 @dataclass(frozen=True)
@@ -240,6 +243,8 @@ class Decision:
         scene: the scene it decided on, if it made one.
         seconds: time spent per stage (``grounding``, ``language``, ``policy``) [s].
         retry: whether this repeats a fold that was seen to have failed.
+        action_map: computes what the policy thinks of every place to pick, for pictures; None where it can't say, or
+            did not choose the picks (:func:`polyfold.interfaces.action_map_later`).
     """
 
     action: Action
@@ -248,3 +253,4 @@ class Decision:
     scene: Scene | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
     retry: bool = False
+    action_map: Callable[[], ActionMap] | None = None

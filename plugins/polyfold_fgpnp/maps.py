@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from polyfold import plugins
 from polyfold.errors import ConfigError
+from polyfold.interfaces import Policy, ValuesPicks
 from polyfold.judging import known_tasks
 from polyfold.tasks import Task, fold_lines
 
 from .affordance import fold_region
-from .learned import LearnedPolicy
 
 if TYPE_CHECKING:
     from polyfold.view import Card
@@ -51,12 +51,12 @@ class Maps:
 
 
 def action_map_sheet(
-    policy: LearnedPolicy, tasks: Sequence[str] = FOUR_TASKS, seed: int = 2000, path: str | Path | None = None
+    policy: Policy, tasks: Sequence[str] = FOUR_TASKS, seed: int = 2000, path: str | Path | None = None
 ) -> NDArray[np.uint8]:
     """For the first fold of each task: the fold line, the values over the lifted contour with the picks, the result.
 
     Args:
-        policy: a learned policy.
+        policy: one with a map (:class:`polyfold.interfaces.ValuesPicks`).
         tasks: ids of tasks of the installed suites.
         seed: of the garments.
         path: PNG to write.
@@ -69,7 +69,7 @@ def action_map_sheet(
     """
     from polyfold.view import score_sheet
 
-    if not isinstance(policy, LearnedPolicy):
+    if not isinstance(policy, ValuesPicks):
         raise ConfigError("this policy has no action map to show; choose a learned one, such as csam+caso")
     known = {task.id: task for kind in plugins.names("garments") for task in known_tasks(kind)}
     unknown = [task for task in tasks if task not in known]
@@ -81,19 +81,19 @@ def action_map_sheet(
     )
 
 
-def _card(policy: LearnedPolicy, task: Task, seed: int) -> Card:
+def _card(policy: Policy, task: Task, seed: int) -> Card:
     from polyfold.view import Card, overlay, value_map
 
-    from .interaction import scene_of
     from .outcomes import expect
 
     simulator, segmenter = plugins.create("simulators", "xpbd"), plugins.create("segmenters", "colour")
     picture = simulator.reset(plugins.create("garments", task.garment).generate(seed), seed)
     before = simulator.state()
     line = fold_lines(task, before.keypoint_pixels())[0]
-    scene = scene_of(picture, segmenter, task.garment)
-    points, values = policy.action_map(line, scene)
+    template = plugins.create("garments", task.garment).template()
+    scene = plugins.create("groundings", "polygon").ground(picture, segmenter.segment(picture), template)
     action = policy.act(line, scene, np.random.default_rng(seed))
+    points, values = policy.action_map(line, scene)
     expectation = expect(fold_region(line, scene), scene.mask, before)
     after = simulator.execute(action)
     outcome = expectation.judge(segmenter.segment(after), simulator.state())

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.geometry import contour_of
-from polyfold.interfaces import Goal, Grounding, Policy, Segmenter
+from polyfold.interfaces import Goal, Grounding, Policy, Segmenter, action_map_later
 from polyfold.types import Decision, FoldLine, Observation, Scene, Subgoal
 
 __all__ = ["Oracle"]
@@ -53,7 +53,8 @@ class Oracle:
         line = self._pending.pop(0)
         scene = self._seen(observation, self._segmenter.segment(observation))
         self._before = scene, line
-        return Decision(self._policy.act(line, scene, self._rng), fold_line=line, scene=scene)
+        action = self._policy.act(line, scene, self._rng)
+        return Decision(action, None, line, scene, action_map=action_map_later(self._policy, line, scene))
 
     def _seen(self, observation: Observation, mask: NDArray[np.bool_]) -> Scene:
         if self._ground:

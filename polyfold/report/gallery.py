@@ -46,12 +46,14 @@ class Gallery:
         pictured: episodes that have a picture on disk.
         left_out: how many of these did not fit.
         unpictured: episodes without a picture.
+        mapped: whether a card shows a policy's values of picks.
     """
 
     cards: Sequence[Card]
     pictured: int
     left_out: int
     unpictured: int
+    mapped: bool
 
 
 def gallery(source: Source, limit: int = LIMIT) -> Gallery:
@@ -81,7 +83,8 @@ def gallery(source: Source, limit: int = LIMIT) -> Gallery:
     order = ("best", "median", "failure", "")
     chosen.sort(key=lambda card: (rank.get(card.record["variant"], len(rank)), order.index(card.pick)))
     unpictured = len(source.records) - len(pictured)
-    return Gallery(chosen, len(pictured), len(pictured) - len(chosen), unpictured)
+    mapped = any(card.record.get("values_picks") for card in chosen)
+    return Gallery(chosen, len(pictured), len(pictured) - len(chosen), unpictured, mapped)
 
 
 def _files(source: Source) -> dict[str, Path]:

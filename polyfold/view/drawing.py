@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.geometry import signed_distance, span_on_mask
-from polyfold.types import Action, FoldLine, Scene
+from polyfold.types import Action, ActionMap, FoldLine, Scene
 from polyfold.view.canvas import Canvas
-from polyfold.view.style import ARMS, FOLD_LINE, GOAL, PAPER, POLYGON, Colour
+from polyfold.view.style import ARMS, FOLD_LINE, GOAL, MAP, PAPER, POLYGON, Colour
 
 if TYPE_CHECKING:
     from polyfold.polygon import Facet, FoldedModel
 
-__all__ = ["draw_action", "draw_fold_line", "draw_model", "draw_outline"]
+__all__ = ["draw_action", "draw_action_map", "draw_fold_line", "draw_lifted", "draw_model", "draw_outline"]
 
 Floats = NDArray[np.float64]
 
@@ -74,14 +74,36 @@ def draw_outline(canvas: Canvas, outline: ArrayLike, colour: Colour = GOAL, dash
     canvas.line(closed, colour, 1.8, dash=dash)
 
 
+def draw_action_map(canvas: Canvas, action_map: ActionMap) -> None:
+    """Places to pick as discs, dark blue for the lowest value, yellow for the highest, which lies on top."""
+    points, values = (np.asarray(part, float) for part in action_map)
+    finite = np.isfinite(values)
+    points, values = points[finite], values[finite]
+    for point in points:
+        canvas.disc(point, 4.2, PAPER)
+    for index in np.argsort(values):
+        canvas.disc(points[index], 3.2, _map_colour(values[index], values.min(), values.max()))
+
+
+def _map_colour(value: float, low: float, high: float) -> Colour:
+    share = 0.5 if high <= low else (value - low) / (high - low)
+    stops = np.array(MAP, float)
+    at = share * (len(stops) - 1)
+    red, green, blue = (round(float(np.interp(at, np.arange(len(stops)), stops[:, c]))) for c in range(3))
+    return red, green, blue
+
+
+def draw_lifted(canvas: Canvas, fold_line: FoldLine, scene: Scene) -> None:
+    """The cloth that a fold line lifts: tinted."""
+    canvas.tint(scene.mask & _left_pixels(fold_line, scene.mask.shape), FOLD_LINE, 0.22)
+
+
 def draw_fold_line(canvas: Canvas, fold_line: FoldLine, scene: Scene | None = None) -> None:
-    """The directed fold line: an arrow with teeth on the side that is lifted, and that side tinted where it is known.
+    """The directed fold line: an arrow with teeth on the side that is lifted.
 
     With a scene the line is drawn where it crosses the cloth and a little beyond.
     """
     line = fold_line if scene is None else _across_cloth(fold_line, scene, canvas.length(14))
-    if scene is not None:
-        canvas.tint(scene.mask & _left_pixels(line, scene.mask.shape), FOLD_LINE, 0.22)
     start, end = np.array(line.start), np.array(line.end)
     if not line.length > 0:
         return

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from polyfold.types import Action, FoldLine, Scene
+from polyfold.types import Action, ActionMap, FoldLine, Scene
 from polyfold.view.canvas import Page, line_height, text_width, wrapped
 from polyfold.view.overlays import overlay
 from polyfold.view.saving import save
-from polyfold.view.style import ARMS, FAINT, FOLD_LINE, GOAL, INK, RULE, Colour
+from polyfold.view.style import ARMS, FAINT, FOLD_LINE, GOAL, INK, MAP, RULE, Colour
 
 __all__ = ["Frame", "filmstrip"]
 
@@ -38,6 +38,7 @@ class Frame:
         action: the picks and places, if any.
         title: the step in words.
         caption: what stands below, such as the time it took.
+        action_map: places to pick and the policy's values, if any.
     """
 
     rgb: Image
@@ -46,6 +47,7 @@ class Frame:
     action: Action | None = None
     title: str = ""
     caption: str = ""
+    action_map: ActionMap | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +96,7 @@ def filmstrip(
 
 def _step_panel(number: int, frame: Frame) -> _Panel:
     zoom = PANEL / max(frame.rgb.shape[:2])
-    picture = overlay(frame.rgb, frame.scene, frame.fold_line, frame.action, zoom=zoom)
+    picture = overlay(frame.rgb, frame.scene, frame.fold_line, frame.action, action_map=frame.action_map, zoom=zoom)
     title = wrapped(f"{number}. {frame.title}", TITLE, PANEL, bold=True)
     return _Panel(picture, title, wrapped(frame.caption, CAPTION, PANEL, most=2))
 
@@ -156,6 +158,8 @@ def _legend(frames: Sequence[Frame], with_ideal: bool) -> list[_Sign]:
     arms = max((frame.action.arms for frame in frames if frame.action is not None), default=0)
     names = ("pick → place",) if arms == 1 else ("first arm, pick → place", "second arm")
     entries += [("●", name, colour) for name, colour in zip(names[:arms], ARMS, strict=False)]
+    if any(frame.action_map is not None for frame in frames):
+        entries += [("●", "value of picking there: lowest", MAP[0]), ("●", "highest", MAP[-2])]
     if with_ideal:
         entries.append(("– –", "ideal outline", GOAL))
     return entries

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from polyfold.types import Action, FoldLine, Observation, Scene
+from polyfold.types import Action, ActionMap, FoldLine, Observation, Scene
 from polyfold.view.canvas import Canvas
-from polyfold.view.drawing import draw_action, draw_fold_line, draw_model, draw_outline
-from polyfold.view.style import MAP, PAPER, Colour
+from polyfold.view.drawing import draw_action, draw_action_map, draw_fold_line, draw_lifted, draw_model, draw_outline
 
 __all__ = ["overlay", "value_map"]
 
@@ -22,6 +21,7 @@ def overlay(
     action: Action | None = None,
     *,
     outline: ArrayLike | None = None,
+    action_map: ActionMap | None = None,
     zoom: float = 1.0,
 ) -> Image:
     """Draw polygon, fold line and picks and places over a picture.
@@ -35,6 +35,7 @@ def overlay(
         fold_line: the planned fold line.
         action: the picks and places.
         outline: an outline to compare with, such as the ideal result [px], shape (N, 2); dashed red.
+        action_map: places to pick and their values, as a policy's ``action_map`` gives them; see :func:`value_map`.
         zoom: size of the result relative to the picture.
 
     Returns:
@@ -45,6 +46,10 @@ def overlay(
         draw_model(canvas, scene.model)
     if outline is not None:
         draw_outline(canvas, outline)
+    if fold_line is not None and scene is not None:
+        draw_lifted(canvas, fold_line, scene)
+    if action_map is not None:
+        draw_action_map(canvas, action_map)
     if fold_line is not None:
         draw_fold_line(canvas, fold_line, scene)
     if action is not None:
@@ -66,26 +71,9 @@ def value_map(
     Args:
         picture: what the camera saw, or its colours.
         points: where the values belong [px], shape (N, 2).
-        values: shape (N,); coloured between their smallest and largest.
+        values: shape (N,); coloured between their smallest and largest, what is not finite is left out.
         fold_line, action: drawn as by :func:`overlay`.
         zoom: size of the result relative to the picture.
     """
-    points, values = np.asarray(points, float), np.asarray(values, float)
-    canvas = Canvas(picture.rgb if isinstance(picture, Observation) else picture, zoom)
-    for point in points:
-        canvas.disc(point, 4.2, PAPER)
-    for index in np.argsort(values):
-        canvas.disc(points[index], 3.2, _colour(values[index], values.min(), values.max()))
-    if fold_line is not None:
-        draw_fold_line(canvas, fold_line)
-    if action is not None:
-        draw_action(canvas, action)
-    return canvas.image()
-
-
-def _colour(value: float, low: float, high: float) -> Colour:
-    share = 0.5 if high <= low else (value - low) / (high - low)
-    stops = np.array(MAP, float)
-    at = share * (len(stops) - 1)
-    red, green, blue = (round(float(np.interp(at, np.arange(len(stops)), stops[:, c]))) for c in range(3))
-    return red, green, blue
+    action_map = np.asarray(points, float), np.asarray(values, float)
+    return overlay(picture, None, fold_line, action, action_map=action_map, zoom=zoom)

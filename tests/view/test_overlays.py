@@ -109,6 +109,10 @@ def test_value_map_colours_low_dark_and_high_bright(rgb):
     low, middle, high = (picture[50, x].sum() for x in (50, 100, 150))
     assert low < middle < high
     assert (view.value_map(rgb, points, [1.0, 1.0, 1.0]) != rgb).any()
+    some = view.value_map(rgb, points, [0.0, np.nan, -np.inf])
+    assert (some[45:55, 90:] == rgb[45:55, 90:]).all()
+    assert changed(rgb, some)[50, 50]
+    assert (view.value_map(rgb, np.zeros((0, 2)), []) == rgb).all()
 
 
 def test_polygon_pictures_show_both_sides_and_all_names(rgb, model, tmp_path):
