@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
 from typing import Any, TypeVar
 
 __all__ = ["in_processes"]
@@ -32,7 +33,7 @@ def in_processes(work: Callable[[Job], Result], jobs: Iterable[Job], workers: in
     with patch.dict(os.environ, dict.fromkeys(_THREADS, "1")):
         pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare_worker)
         try:
-            for job, _ in zip(waiting, range(2 * workers), strict=False):
+            for job in islice(waiting, 2 * workers):
                 running[pool.submit(work, job)] = job
             while running:
                 finished, _ = wait(running, return_when=FIRST_COMPLETED)
