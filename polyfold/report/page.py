@@ -152,6 +152,6 @@ def _bound(threshold: Threshold) -> str:
 def _toml(settings: Mapping[str, Any]) -> str:
     """The study as the file that runs it again; as JSON if it was made in Python with values that TOML lacks."""
     try:
-        return tomli_w.dumps(dict(settings))
+        return tomli_w.dumps({name: value for name, value in settings.items() if value is not None})
     except TypeError:
         return json.dumps(settings, indent=2)

@@ -1,11 +1,13 @@
 import base64
 import hashlib
+import html
 import re
 from html.parser import HTMLParser
 
 import pytest
 from made_up_runs import BAD, GOOD, TASKS, record
 
+import polyfold
 from polyfold.cli import main
 from polyfold.errors import ConfigError
 from polyfold.report import report_html
@@ -171,6 +173,12 @@ def test_the_noise_floor_is_a_footnote_where_it_is_given(full_run):
 def test_a_single_variant_needs_no_comparison(make_run):
     records = [record("ours", task, 2000, GOOD) for task in TASKS]
     assert 'id="comparison"' not in report_html(make_run(records, ["ours"]))
+
+
+def test_the_configuration_on_the_page_is_the_file_that_runs_the_study_again(full_run, tmp_path):
+    shown = html.unescape(re.search(r'<pre tabindex="0">(.*?)</pre>', report_html(full_run), re.DOTALL)[1])
+    (tmp_path / "again.toml").write_text(shown)
+    assert polyfold.load(tmp_path / "again.toml") == open_results(full_run).study
 
 
 def test_the_same_run_gives_the_same_page(full_run):
