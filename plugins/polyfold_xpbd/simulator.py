@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import SimulationError
-from polyfold.garments import Garment
+from polyfold.garments import Garment, Mesh
 from polyfold.types import Action, Camera, Observation, SimState
 
 if TYPE_CHECKING:
@@ -64,9 +65,9 @@ class XpbdSimulator:
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
         self._garment, self._seed, self._actions = garment, seed, []
         self._camera = Camera.framing(2 * radius / self.config.fill)
-        self._order = self._numbering(len(flat))
+        self._order, mesh = _renumbered(garment.mesh, self.config.order)
         self._rank = np.argsort(self._order)
-        self._solver = Solver(garment.mesh.renumbered(self._order), ((flat - centre) @ turn)[self._order], self.config)
+        self._solver = Solver(mesh, ((flat - centre) @ turn)[self._order], self.config)
         self._solver.settle(0.3)
         self._keypoints = _named_as_seen(garment, self._solver.positions()[self._rank])
         self._two_layers = garment.mesh.layers == 2
@@ -139,17 +140,6 @@ class XpbdSimulator:
         """Release the solver; call :meth:`reset` to go on."""
         self._solver = self._garment = None
 
-    def _numbering(self, count: int) -> NDArray[np.int64]:
-        """Which vertex of the mesh each particle of the solver is, shape (N,).
-
-        Meshes are numbered row by row. Corrections made in that order all push the same way and twist thick packets. A
-        random order brings trousers 6 mm nearer to the ideal fold (mean over their tasks), at a tenth more time; other
-        kinds hardly change.
-        """
-        if self.config.order == 0:
-            return np.arange(count)
-        return np.random.default_rng(self.config.order).permutation(count)
-
     def _ready(self) -> tuple[Solver, Garment]:
         if self._solver is None or self._garment is None:
             raise SimulationError("there is no cloth on the table; call reset(garment, seed) first")
@@ -160,6 +150,19 @@ class XpbdSimulator:
             return None, 0.0
         recorder, rate = self._recorder
         return lambda: recorder(self.observe()), 1.0 / rate
+
+
+@lru_cache(maxsize=4)
+def _renumbered(mesh: Mesh, order: int) -> tuple[NDArray[np.int64], Mesh]:
+    """Which vertex of the mesh each particle of the solver is, shape (N,), and the mesh numbered so.
+
+    Meshes are numbered row by row. Corrections made in that order all push the same way and twist thick packets. A
+    random order brings trousers 6 mm nearer to the ideal fold (mean over their tasks), at a tenth more time; other
+    kinds hardly change. Kept for the next reset of the same garment, whose constraints then need not be made again.
+    """
+    count = len(mesh.vertices)
+    numbering = np.arange(count) if order == 0 else np.random.default_rng(order).permutation(count)
+    return numbering, mesh.renumbered(numbering)
 
 
 def _named_as_seen(garment: Garment, positions: NDArray[np.float64]) -> Mapping[str, int]:

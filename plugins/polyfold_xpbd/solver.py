@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from polyfold.garments import Mesh
 from polyfold.types import Action, Camera
 from polyfold_xpbd.compiled import DIVERGED, SETTLED, advance, vertex_normals
 from polyfold_xpbd.grasp import plan_motion, take_hold
-from polyfold_xpbd.model import build_model
+from polyfold_xpbd.model import ClothModel, build_model
 from polyfold_xpbd.tethers import TetherMap
 
 __all__ = ["Solver"]
@@ -40,13 +41,18 @@ def time_step(edge_length: float) -> float:
     return 1 / 900 if edge_length < 0.0128 else 1 / 600
 
 
+@lru_cache(maxsize=4)
+def _constraints(mesh: Mesh, bending_length: float) -> tuple[ClothModel, TetherMap]:
+    """What a mesh is held together by; studies lay the same few garments again and again."""
+    return build_model(mesh, bending_length), TetherMap(mesh)
+
+
 class Solver:
     """One cloth: buffers of the compiled loop, and folding, settling and waiting with them."""
 
     def __init__(self, mesh: Mesh, flat: NDArray[np.float64], config: Any) -> None:
         count = len(flat)
-        self._model = build_model(mesh, config.bending_length)
-        self._tethers = TetherMap(mesh)
+        self._model, self._tethers = _constraints(mesh, config.bending_length)
         self._thickness = config.thickness
         edge_length = self._model.edge_length
         self.dt = time_step(edge_length)
