@@ -84,7 +84,8 @@ def make_examples(
         data: one or more data sets.
         variant: a key of :data:`TRIALS_OF`.
         frame: how the network sees the flap.
-        reward: ``contour`` or ``particles``.
+        reward: ``contour``, ``particles``, or ``both`` for the mean of the two labels: particles tell layers apart
+            that the contour can't, the contour sees a corner turned over that hardly counts among the particles.
         scale: see :func:`label`.
         folds: use only about so many folds of each data set, the first ones.
 
@@ -113,7 +114,8 @@ def _examples_of(data: Dataset, variant: str, frame: FrameName, reward: str, sca
     states = data["trial_state"][trials]
     kept = np.unique(states)
     most = int(np.bincount(states).max())
-    labels = label(data.reward(reward), scale)
+    rewards = ("contour", "particles") if reward == "both" else (reward,)
+    labels = np.mean([label(data.reward(name), scale) for name in rewards], axis=0)
     rows = {name: [] for name in ("images", "lines", "points", "geometry", "labels", "valid", "garments")}
     for state in tqdm(kept, unit="state", desc="views", disable=not sys.stderr.isatty()):
         mine = trials[states == state]

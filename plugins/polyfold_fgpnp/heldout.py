@@ -58,7 +58,7 @@ class Contestant:
         cls = plugins.component_class("policies", name)
         if not weights and not issubclass(cls, LearnedPolicy):
             return name
-        content = weights_file(weights or cls.variant).read_bytes()
+        content = weights_file(weights or cls.Config().weights).read_bytes()
         return f"{name}-{hashlib.sha256(content).hexdigest()[:12]}"
 
 

@@ -11,7 +11,7 @@ def register_policies(register):
     register("farthest", "polyfold_fgpnp.caso:Farthest", "the point farthest from the line, the second pick by caso")
     learned = "polyfold_fgpnp.learned"
     register("csam+caso", f"{learned}:CoupledActionMap", "the best point of a learned map, the second pick by caso")
-    register("vertex-learned", f"{learned}:VertexLearned", "the best polygon vertex by a learned value, then caso")
+    register("vertex-learned", f"{learned}:VertexLearned", "the best polygon vertex by the learned map, then caso")
     register("1sam", f"{learned}:OneActionMap", "one arm at the best point of a learned map")
     register("2sam", f"{learned}:TwoActionMaps", "two arms at the best points of two learned maps")
     register("pair", f"{learned}:PairValue", "the two points with the best learned joint value")

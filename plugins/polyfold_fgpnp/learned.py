@@ -56,12 +56,13 @@ def _read(file: Path, version: tuple[int, int], variants: tuple[str, ...]) -> Va
     return load_weights(file, *variants)[0]
 
 
+WEIGHTS = "name of weights that come with the package, or file of `polyfold train`"
+
+
 class LearnedConfig(PickConfig):
     """Parameters that the learned policies share."""
 
-    weights: str = Field(
-        "", description="file of `polyfold train`, or name of weights of the package; empty for the variant's own"
-    )
+    weights: str = Field(description=WEIGHTS)
 
 
 class LearnedPolicy(ABC):
@@ -70,13 +71,11 @@ class LearnedPolicy(ABC):
     variant: ClassVar[str]
     also: ClassVar[tuple[str, ...]] = ()
     """Other variants of the network that serve."""
-
-    class Config(LearnedConfig):
-        """Parameters."""
+    Config: ClassVar[type[LearnedConfig]]
 
     def __init__(self, config: LearnedConfig | None = None) -> None:
         self.config = config or self.Config()
-        self._network = _network(self.config.weights or self.variant, (self.variant, *self.also))
+        self._network = _network(self.config.weights, (self.variant, *self.also))
 
     def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
         """Pick where the network promises most; ``rng`` is not used.
@@ -91,18 +90,18 @@ class LearnedPolicy(ABC):
     def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
         """The lifted contour [px], shape (N, 2), and the value of picking there, shape (N,); higher is better."""
         region = fold_region(fold_line, scene)
-        return region.points, self._values(region, scene).mean(axis=0)
+        return region.points, self._values(region, scene, region.points).mean(axis=0)
 
     @abstractmethod
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
         """Two contour points [px], each of shape (2,)."""
 
-    def _values(self, region: FoldRegion, scene: Scene) -> Floats:
-        """Value of every contour point in each map, shape (maps, N)."""
+    def _values(self, region: FoldRegion, scene: Scene, points: Floats) -> Floats:
+        """Value of points [px], shape (N, 2), in each map, shape (maps, N)."""
         from .networks import sampled
 
         maps, frame = self._maps(region, scene)
-        return _array(sampled(maps.mean(0, keepdim=True), _points(frame, region.points)[None])[0].T)
+        return _array(sampled(maps.mean(0, keepdim=True), _points(frame, points)[None])[0].T)
 
     def _maps(self, region: FoldRegion, scene: Scene) -> tuple[Tensor, Frame]:
         """The network's maps, shape (M, C, H, W), and where the camera's pixels are in them.
@@ -148,6 +147,7 @@ class CoupledActionMap(LearnedPolicy):
     class Config(LearnedConfig):
         """Parameters."""
 
+        weights: str = Field("pair", description=WEIGHTS)
         slide: float = Field(PARTNER_SLIDE, ge=0, lt=0.5, description="share of their distance that the partner moves")
 
     def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
@@ -162,26 +162,32 @@ class CoupledActionMap(LearnedPolicy):
 
     def _coupled(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats | None, Floats]:
         """Points, their partners if the network asks for them, and values."""
-        if self._network.config.variant == "csam":
-            return region.points, None, self._values(region, scene)[0]
-        points = _thinned(region.points)
+        points = self._candidates(region, scene)
+        if self._network.config.variant != "pair":
+            return points, None, self._values(region, scene, points)[0]
         partners = self._partner(region, points)
         return points, partners, self._pair_values(region, scene, points, partners)
+
+    def _candidates(self, region: FoldRegion, scene: Scene) -> Floats:
+        """Points that may be picked first, shape (N, 2)."""
+        return _thinned(region.points) if self._network.config.variant == "pair" else region.points
 
     def _partner(self, region: FoldRegion, first: Floats) -> Floats:
         return coupled_pick(region, first, self.config, self.config.slide)
 
 
-class VertexLearned(LearnedPolicy):
-    """The polygon vertex with the highest value; its partner by affordance. Needs a polygon model."""
+class VertexLearned(CoupledActionMap):
+    """As the coupled spatial action map, but only visible vertices of the polygon model are picked first.
+
+    So what the dense map adds can be told from what the network adds. A network trained on picks at vertices alone,
+    as the paper's, will do too.
+    """
 
     variant: ClassVar[str] = "vertex-learned"
+    also: ClassVar[tuple[str, ...]] = ("csam", "pair")
 
-    def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
-        vertices = [nearest_point(region.points, vertex) for vertex in lifted_vertices(region, scene)]
-        indices = [int(np.argmin(((region.points - vertex) ** 2).sum(1))) for vertex in vertices]
-        first = region.points[indices[int(np.argmax(self._values(region, scene)[0][indices]))]]
-        return first, coupled_pick(region, first, self.config)
+    def _candidates(self, region: FoldRegion, scene: Scene) -> Floats:
+        return np.array([nearest_point(region.points, vertex) for vertex in lifted_vertices(region, scene)])
 
 
 class OneActionMap(LearnedPolicy):
@@ -189,8 +195,13 @@ class OneActionMap(LearnedPolicy):
 
     variant: ClassVar[str] = "1sam"
 
+    class Config(LearnedConfig):
+        """Parameters."""
+
+        weights: str = Field("1sam", description=WEIGHTS)
+
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
-        pick = region.points[int(np.argmax(self._values(region, scene)[0]))]
+        pick = region.points[int(np.argmax(self._values(region, scene, region.points)[0]))]
         return pick, pick
 
 
@@ -199,8 +210,13 @@ class TwoActionMaps(LearnedPolicy):
 
     variant: ClassVar[str] = "2sam"
 
+    class Config(LearnedConfig):
+        """Parameters."""
+
+        weights: str = Field("2sam", description=WEIGHTS)
+
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
-        first, second = np.argmax(self._values(region, scene), axis=1)
+        first, second = np.argmax(self._values(region, scene, region.points), axis=1)
         return region.points[first], region.points[second]
 
 
@@ -216,6 +232,7 @@ class PairValue(LearnedPolicy):
     class Config(LearnedConfig):
         """Parameters."""
 
+        weights: str = Field("pair", description=WEIGHTS)
         least_affordance: float = Field(0.65, ge=0, le=1, description="pairs need this share of the best affordance")
 
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:

@@ -49,7 +49,7 @@ class TrainingConfig(BaseModel):
     data: tuple[str, ...] = Field(min_length=1, description="data sets of `polyfold collect`")
     network: NetworkConfig = Field(default_factory=NetworkConfig)
     folds: int | None = Field(None, ge=1, description="use the first so many folds of each data set")
-    reward: Literal["contour", "particles"] = Field("particles", description="what counts as good")
+    reward: Literal["contour", "particles", "both"] = Field("particles", description="what counts as good")
     scale: Literal["linear", "log"] = Field("log", description="how rewards become labels")
     state_weight: float = Field(1.0, ge=0, description="weight of the error that all picks of a state share; 1: MSE")
     epochs: int = Field(60, ge=1, description="passes over all states")
