@@ -3,13 +3,13 @@
 First train, with ``snapshots`` in the TOML file, once per seed or data size; then let a study fold with every file of
 weights; then draw. Paths in the study are those given here, relative to where one runs:
 
-    polyfold train experiments/training/csam.toml --seed 1 --out runs/csam-s1
-    python -m polyfold_fgpnp.curves study runs/csam-s* > curve.toml
+    polyfold train experiments/training/pair.toml --seed 1 --out runs/pair-s1
+    python -m polyfold_fgpnp.curves study runs/pair-s* > curve.toml
     polyfold evaluate curve.toml --out runs/curve
-    python -m polyfold_fgpnp.curves training runs/csam-s* --evaluation runs/curve --out training.png
+    python -m polyfold_fgpnp.curves training runs/pair-s* --evaluation runs/curve --out training.png
 
-    polyfold train experiments/training/csam.toml --folds 2500 --out runs/csam-2500
-    python -m polyfold_fgpnp.curves study --last --steps multi runs/csam-2500 runs/csam-5000 runs/csam-s0 > sizes.toml
+    polyfold train experiments/training/pair.toml --folds 2500 --out runs/pair-2500
+    python -m polyfold_fgpnp.curves study --last --steps multi runs/pair-2500 runs/pair-5000 runs/pair-s0 > sizes.toml
     polyfold evaluate sizes.toml --out runs/sizes
     python -m polyfold_fgpnp.curves sizes runs/sizes --out sizes.png
 

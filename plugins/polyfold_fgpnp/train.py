@@ -21,7 +21,7 @@ class Train:
     @staticmethod
     def configure(parser: argparse.ArgumentParser) -> None:
         """Add the options."""
-        parser.add_argument("config", type=Path, help="TOML, for example experiments/csam.toml")
+        parser.add_argument("config", type=Path, help="TOML, for example experiments/training/pair.toml")
         parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder; resumed if it exists")
         parser.add_argument("--device", choices=["auto", "cpu", "cuda"], default="auto", help="default: auto")
         parser.add_argument("--data", metavar="DIR", action="append", help="data set instead of the file's; repeatable")
