@@ -159,7 +159,7 @@ class Dataset:
         if name == "contour":
             return contour_reward(self["chamfer_px"], self["idle_chamfer_px"][state])
         if name == "particles":
-            return particle_reward(self["flap_mm"], self["travel_mm"][state])
+            return particle_reward(self["flap_mm"], self["rest_mm"], self["travel_mm"][state])
         raise ConfigError(f"there is no reward {name!r}; choose contour or particles")
 
 

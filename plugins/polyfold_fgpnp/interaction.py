@@ -24,7 +24,7 @@ from .affordance import FoldRegion, PickConfig, to_action
 from .caso import Caso
 from .learned import CoupledActionMap
 from .lines import LINE_KINDS, PLAUSIBLE, RandomLine, random_line
-from .outcomes import Expectation, Outcome, expect, particle_reward
+from .outcomes import Expectation, Outcome, expect
 from .trials import MIX, RECIPES, Flap, ValueMap, draw_trials
 from .weights import weights_file
 
@@ -43,7 +43,7 @@ LINES_PER_STAGE = (2, 1, 1)
 """Fold lines tried on the flat garment, after one good fold, and after two."""
 
 GOOD_FOLD = 0.75
-"""A fold on the way to a folded state counts as good from this particle reward on."""
+"""A fold on the way to a folded state counts as good if its flap went this share of its way."""
 
 ATTEMPTS = 4
 """Lines tried for one good fold; without one the garment stays as it is."""
@@ -195,7 +195,7 @@ def _good_fold(
         except (PlanError, SimulationError, GroundingError):
             simulator.restore(state)
             continue
-        if particle_reward(outcome.flap_mm, expectation.travel_mm) >= GOOD_FOLD:
+        if 1 - outcome.flap_mm / expectation.travel_mm >= GOOD_FOLD:
             return after
         simulator.restore(state)
     return None
