@@ -153,13 +153,18 @@ class Dataset:
         wanted = [list(RECIPES).index(recipe) for recipe in recipes]
         return np.flatnonzero(np.isin(self["recipe"], wanted) & ~self["diverged"])
 
+    @property
+    def error_mm(self) -> NDArray[np.float64]:
+        """How far every trial is from the ideal fold, flap and rest [mm], shape (T,); NaN where it diverged."""
+        return self["flap_mm"].astype(float) + self["rest_mm"]
+
     def reward(self, name: str) -> NDArray[np.float64]:
         """Reward ``contour`` or ``particles`` of every trial, shape (T,); NaN where it diverged."""
         state = self["trial_state"]
         if name == "contour":
             return contour_reward(self["chamfer_px"], self["idle_chamfer_px"][state])
         if name == "particles":
-            return particle_reward(self["flap_mm"], self["rest_mm"], self["travel_mm"][state])
+            return particle_reward(self.error_mm, self["travel_mm"][state])
         raise ConfigError(f"there is no reward {name!r}; choose contour or particles")
 
 

@@ -94,7 +94,7 @@ def _executed(path: Path, data: Dataset, contestant: Contestant, workers: int) -
     with kept.open("a", encoding="utf-8") as stream:
         for job, (errors, ways) in tqdm(in_processes(work, missing, workers), total=len(missing), desc=contestant.text):
             _refuse_other_states(data["travel_mm"][each * job : each * (job + 1)], ways)
-            stream.write(json.dumps({"job": job, "flap_mm": errors}) + "\n")
+            stream.write(json.dumps({"job": job, "error_mm": errors}) + "\n")
             stream.flush()
             found[job] = errors
     return np.concatenate([found[job] for job in sorted(found)]).astype(float)
@@ -116,7 +116,7 @@ def _kept(path: Path) -> Iterator[tuple[int, list[float | None]]]:
             record = json.loads(line)
         except json.JSONDecodeError:
             continue  # cut off when a run was killed
-        yield record["job"], record["flap_mm"]
+        yield record["job"], record["error_mm"]
 
 
 def _fold_job(interaction: Interaction, contestant: Contestant, job: int) -> tuple[list[float | None], list[float]]:
@@ -133,7 +133,7 @@ def _fold_job(interaction: Interaction, contestant: Contestant, job: int) -> tup
             errors.append(situation.expectation.travel_mm)
             continue
         outcome, _ = execute(simulator, segmenter, situation, action)
-        errors.append(None if outcome is None else outcome.flap_mm)
+        errors.append(None if outcome is None else outcome.error_mm)
     return errors, ways
 
 

@@ -5,6 +5,7 @@ Everything is compared within a state: a data set has many first picks from each
 * **Rank correlation** (Spearman) of what was predicted of a state's picks and how they came out, by particles and by
   silhouette; a state counts if three picks came out differently. Learned maps stand beside two predictions that learn
   nothing: ``distance``, of the first pick from the line, and ``affordance``, of the pair that was tried.
+* **Error**: how far the flap is from its ideal place and the rest from where it lay, the sum of both means [mm].
 * **Regret**: the error of the chosen pick less that of the best first pick that the data set tried in that state. This
   zero does not move with the policies that are compared, but it is no optimum: a finite number of picks was tried, the
   more the better, with partners by affordance. So a policy's regret can be negative.
@@ -126,7 +127,7 @@ def regret_table(data: Dataset, errors: Mapping[str, Floats]) -> Table:
         errors: policy -> error of the flap [mm] in every state, shape (S,), NaN where the cloth diverged, which is
             left out and shows in n.
     """
-    outcomes = [data["flap_mm"][trials].astype(float) for trials in tried(data)]
+    outcomes = [data.error_mm[trials] for trials in tried(data)]
     random, best = (np.array([of(found) if len(found) else np.nan for found in outcomes]) for of in (np.mean, np.min))
     first = next(iter(errors))
     rows = []

@@ -39,6 +39,11 @@ class Outcome:
     flap_mm: float
     rest_mm: float
 
+    @property
+    def error_mm(self) -> float:
+        """How far the fold is from the ideal one: the flap's error and what the rest was dragged [mm]."""
+        return self.flap_mm + self.rest_mm
+
 
 @dataclass(frozen=True, eq=False)
 class Expectation:
@@ -117,10 +122,9 @@ def contour_reward(chamfer_px: ArrayLike, idle_chamfer_px: ArrayLike) -> Floats:
     return BETA - ALPHA * np.asarray(chamfer_px, float) / np.maximum(np.asarray(idle_chamfer_px, float), LEAST_IDLE_PX)
 
 
-def particle_reward(flap_mm: ArrayLike, rest_mm: ArrayLike, travel_mm: ArrayLike) -> Floats:
-    """1 - (error of the flap + displacement of the rest) / travel: 1 is ideal, 0 as good as nothing.
+def particle_reward(error_mm: ArrayLike, travel_mm: ArrayLike) -> Floats:
+    """1 - error of flap and rest / travel: 1 is ideal, 0 as good as nothing. Privileged: it needs the particles.
 
-    Privileged: it needs the particles. Without the rest, picks near the crease looked best on small thick flaps: they
-    lay down the flap well and drag what should stay.
+    By the flap alone, picks near the crease look best on small thick flaps: they lay it down well and drag the rest.
     """
-    return 1.0 - (np.asarray(flap_mm, float) + np.asarray(rest_mm, float)) / np.asarray(travel_mm, float)
+    return 1.0 - np.asarray(error_mm, float) / np.asarray(travel_mm, float)

@@ -23,7 +23,7 @@ def folder(folds_folder, tmp_path_factory):
 
 
 def with_outcomes(folds, flap_mm):
-    return Dataset(folds.description, {**folds.columns, "flap_mm": flap_mm.astype(np.float32)})
+    return Dataset(folds.description, {**folds.columns, "flap_mm": flap_mm.astype(np.float32), "rest_mm": 0 * flap_mm})
 
 
 def column(table, name):
@@ -54,8 +54,8 @@ def test_what_was_folded_is_kept_and_not_folded_again(folder, capsys):
     before = capsys.readouterr().out
     kept = folder / "policies" / "caso.jsonl"
     records = [json.loads(line) for line in kept.read_text().splitlines()]
-    assert [len(record["flap_mm"]) for record in records] == [4, 4]
-    changed = [{**record, "flap_mm": [999.0] * 4} for record in records]
+    assert [len(record["error_mm"]) for record in records] == [4, 4]
+    changed = [{**record, "error_mm": [999.0] * 4} for record in records]
     kept.write_text("".join(json.dumps(record) + "\n" for record in changed) + '{"job": 0, "fl')
     heldout.main([str(folder), "caso"])
     assert "| caso | 8 | 999.0 [999.0, 999.0] |" in capsys.readouterr().out
@@ -86,7 +86,7 @@ def test_a_prediction_that_orders_all_picks_right_has_rank_correlation_one(folds
 
 
 def test_regret_is_against_the_picks_tried_whoever_else_is_there(folds):
-    best = np.array([folds["flap_mm"][trials].min() for trials in tried(folds)], float)
+    best = np.array([folds.error_mm[trials].min() for trials in tried(folds)], float)
     errors = {"worse": best + 7.0}
     alone = column(regret_table(folds, errors), "regret [mm]")
     beside = column(regret_table(folds, {**errors, "perfect": np.zeros_like(best)}), "regret [mm]")

@@ -42,8 +42,8 @@ def test_ideal_fold_gets_1_and_doing_nothing_0(corners, line):
     ideal = expectation.judge(expectation.mask, state_at(np.where(flap[:, None], line.mirror(pixels), pixels)))
     nothing = expectation.judge(scene.mask, before)
     assert ideal.iou == 1
-    assert particle_reward(ideal.flap_mm, expectation.travel_mm) == pytest.approx(1, abs=1e-6)
-    assert particle_reward(nothing.flap_mm, expectation.travel_mm) == pytest.approx(0, abs=1e-6)
+    assert particle_reward(ideal.error_mm, expectation.travel_mm) == pytest.approx(1, abs=1e-6)
+    assert particle_reward(nothing.error_mm, expectation.travel_mm) == pytest.approx(0, abs=1e-6)
     assert contour_reward(ideal.chamfer_px, expectation.idle_chamfer_px) == pytest.approx(1, abs=1e-6)
     assert contour_reward(nothing.chamfer_px, expectation.idle_chamfer_px) == pytest.approx(0, abs=1e-6)
     assert ideal.rest_mm == pytest.approx(0, abs=1e-6)
