@@ -47,24 +47,14 @@ class Collect:
     def run(arguments: argparse.Namespace) -> int:
         """Collect, or describe."""
         from .describe import describe
-        from .interaction import Interaction
-        from .trials import MIX, parse_mix
 
         if (arguments.out is None) == (arguments.describe is None):
             raise ConfigError("say either where to collect (--out DIR) or what to show (--describe DIR)")
         if arguments.describe is not None:
             print(describe(arguments.describe))
             return 0
-        interaction = Interaction(
-            kind=arguments.kind,
-            seeds=_seeds(arguments.seeds),
-            edge_length=arguments.edge_length,
-            mix=parse_mix(arguments.mix) if arguments.mix else dict(MIX),
-            seed=arguments.seed,
-            weights=arguments.weights,
-        )
         try:
-            found = collect(interaction, arguments.folds, arguments.out, arguments.workers)
+            found = collect(_interaction(arguments), arguments.folds, arguments.out, arguments.workers)
         except KeyboardInterrupt:
             print(f"interrupted; what is finished is in {arguments.out}, run the same command to go on")
             raise
@@ -88,15 +78,22 @@ def collect(
         progress: show a progress bar.
 
     Raises:
-        ConfigError: if the folder holds a data set with other parameters, or the weights do not serve.
+        ConfigError: if the folder holds a data set with other parameters or changed shards, there is no such kind of
+            garment, the weights do not serve, or not even one fold or process is asked for.
     """
     from tqdm import tqdm
+
+    from polyfold import plugins
 
     from .dataset import DatasetFolder
     from .interaction import explore, trials_per_job, value_policy
     from .workers import in_processes
 
-    value_policy(interaction)  # Weights that do not serve are refused before there is a folder that names them.
+    if folds < 1 or workers < 1:
+        raise ConfigError(f"{folds} folds by {workers} processes can't be collected; give 1 or more of each")
+    # What does not serve is refused before there is a folder that names it.
+    plugins.component_class("garments", interaction.kind)
+    value_policy(interaction)
     folder = DatasetFolder(out, interaction.model_dump(mode="json"))
     each = trials_per_job(interaction.mix)
     total = -(-folds // each)
@@ -107,6 +104,27 @@ def collect(
             folder.write(job, arrays)
             bar.update(each)
     return folder.finish()
+
+
+def _interaction(arguments: argparse.Namespace) -> Interaction:
+    from pydantic import ValidationError
+
+    from .interaction import Interaction
+    from .trials import MIX, parse_mix
+
+    try:
+        return Interaction(
+            kind=arguments.kind,
+            seeds=_seeds(arguments.seeds),
+            edge_length=arguments.edge_length,
+            mix=parse_mix(arguments.mix) if arguments.mix else dict(MIX),
+            seed=arguments.seed,
+            weights=arguments.weights,
+        )
+    except ValidationError as error:
+        first = error.errors()[0]
+        option = str(first["loc"][0]).replace("_", "-")
+        raise ConfigError(f"--{option} has a bad value: {first['msg']}; change it") from error
 
 
 def _seeds(text: str) -> tuple[int, int]:

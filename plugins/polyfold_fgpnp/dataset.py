@@ -61,16 +61,20 @@ class DatasetFolder:
         self._parameters = json.loads(json.dumps(parameters))
         (self.path / "shards").mkdir(parents=True, exist_ok=True)
         if (self.path / "dataset.json").exists():
-            self._refuse_others(_read_description(self.path)["parameters"])
+            self._found = _read_description(self.path)
+            self._refuse_others(self._found["parameters"])
         else:
-            self._describe({"complete": False})
+            self._found = self._describe({"complete": False})
 
     def jobs(self) -> set[int]:
         """Jobs whose shards are there."""
         return {int(path.stem) for path in (self.path / "shards").glob("*.npz")}
 
     def write(self, job: int, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Write a job's shard."""
+        """Write a job's shard; a data set that was finished is being extended then, and no longer complete."""
+        if self._found["complete"]:
+            before = {name: self._found[name] for name in ("counts", "hash")}
+            self._found = self._describe({"complete": False, **before})
         target = self.path / "shards" / f"{job:05d}.npz"
         part = target.with_suffix(f".part{os.getpid()}")
         with part.open("wb") as stream:
@@ -78,16 +82,24 @@ class DatasetFolder:
         part.replace(target)
 
     def finish(self) -> Description:
-        """Write counts and hash into ``dataset.json`` and return it; leftovers of killed runs are removed."""
+        """Write counts and hash into ``dataset.json`` and return it; leftovers of killed runs are removed.
+
+        Raises:
+            ConfigError: if it was finished before with as many folds, and others.
+        """
         for part in (self.path / "shards").glob("*.part*"):
             part.unlink()
         states = trials = diverged = 0
-        for _, shard in _shards(self.path):
+        for shard in _shards(self.path):
             states += len(shard["mask"])
             trials += len(shard["recipe"])
             diverged += int(shard["diverged"].sum())
         counts = {"states": states, "folds": trials, "diverged": diverged}
-        return self._describe({"complete": True, "counts": counts, "hash": _hash(self.path)})
+        found = {"counts": counts, "hash": _hash(self.path)}
+        if self._found.get("counts") == counts and self._found["hash"] != found["hash"]:
+            raise _changed(self.path)
+        self._found = self._describe({"complete": True, **found})
+        return self._found
 
     def _describe(self, found: Mapping[str, Any]) -> Description:
         description = {"schema_version": SCHEMA, "parameters": self._parameters, **found}
@@ -180,9 +192,9 @@ def load_dataset(path: str | Path) -> Dataset:
     if not description.get("complete"):
         raise ConfigError(f"the data set in {path} is not complete; run the same `polyfold collect` again to finish it")
     if _hash(path) != description["hash"]:
-        raise ConfigError(f"shards in {path} have changed since it was finished; collect them again")
+        raise _changed(path)
     shards, offset = [], 0
-    for _, shard in _shards(path):
+    for shard in _shards(path):
         shard["trial_state"] = shard["trial_state"] + offset
         offset += len(shard["mask"])
         shards.append(shard)
@@ -201,10 +213,14 @@ def _read_description(path: Path) -> Description:
     return description
 
 
-def _shards(path: Path) -> Iterator[tuple[int, dict[str, NDArray[Any]]]]:
+def _changed(path: Path) -> ConfigError:
+    return ConfigError(f"shards in {path} have changed since it was finished; collect into another folder")
+
+
+def _shards(path: Path) -> Iterator[dict[str, NDArray[Any]]]:
     for file in sorted((path / "shards").glob("*.npz")):
         with np.load(file, allow_pickle=False) as shard:
-            yield int(file.stem), dict(shard)
+            yield dict(shard)
 
 
 def _hash(path: Path) -> str:

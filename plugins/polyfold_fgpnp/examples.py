@@ -42,7 +42,7 @@ class Examples:
         images: views of the states, uint8, shape (S, C, H, W).
         lines: fold lines over the image's size, float32, shape (S, 4).
         points: both picks of each trial in pixels of the network's map, float32, shape (S, K, 2, 2); of two arms the
-            first is the one nearer the fold line's start where ``ordered``.
+            first is the one nearer the fold line's start for ``2sam``.
         geometry: what :func:`pair_geometry` says of each trial, float32, shape (S, K, GEOMETRY).
         labels: higher is better, float32, shape (S, K).
         valid: which trials are there, bool, shape (S, K).
@@ -93,7 +93,7 @@ def make_examples(
         ConfigError: if the data sets hold no trials for this variant.
     """
     recipes = TRIALS_OF[variant]
-    useful = [one for one in data if len(one.of_recipes(*recipes))]
+    useful = [one for one in data if len(_trials(one, variant, reward, folds))]
     if not useful:
         raise ConfigError(
             f"no data for {variant}: it learns from the recipes {', '.join(recipes)}; collect some with --mix"
@@ -109,8 +109,7 @@ def make_examples(
 def _examples_of(data: Dataset, variant: str, frame: FrameName, reward: str, scale: str, folds: int | None) -> Examples:
     from tqdm import tqdm
 
-    trials = data.of_recipes(*TRIALS_OF[variant])
-    trials = trials[trials < (folds or data.folds)]
+    trials = _trials(data, variant, reward, folds)
     states = data["trial_state"][trials]
     kept = np.unique(states)
     most = int(np.bincount(states).max())
@@ -135,6 +134,13 @@ def _examples_of(data: Dataset, variant: str, frame: FrameName, reward: str, sca
         rows["valid"].append(np.arange(most) < len(mine))
         rows["garments"].append(data["garment_seed"][state])
     return Examples(**{name: np.array(row) for name, row in rows.items()})
+
+
+def _trials(data: Dataset, variant: str, reward: str, folds: int | None) -> NDArray[np.int64]:
+    """Trials that teach a variant, of the first so many; one without a reward would make every weight NaN."""
+    trials = data.of_recipes(*TRIALS_OF[variant])
+    trials = trials[trials < (folds or data.folds)]
+    return trials[np.isfinite(data.reward(reward)[trials])]
 
 
 def _ordered(picks: NDArray, line) -> NDArray:

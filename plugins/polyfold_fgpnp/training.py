@@ -89,20 +89,23 @@ def train(config: TrainingConfig, out: str | Path, device: str = "auto", progres
         progress: show a progress bar.
 
     Raises:
-        ConfigError: if the folder holds another training, data is missing, or the network has collapsed.
+        ConfigError: if the folder holds another training, data or the device is missing, or the network has collapsed.
     """
     from tqdm import tqdm
 
     out = Path(out)
-    target = torch.device(("cuda" if torch.cuda.is_available() else "cpu") if device == "auto" else device)
+    target = _device(device)
     sets = [load_dataset(path) for path in config.data]
     hashes = tuple(data.description["hash"] for data in sets)
-    _claim(out, config, hashes)
+    note = json.dumps({"config": config.plain(), "data": hashes}, indent=2) + "\n"
+    _refuse_another(out, note)
     examples = make_examples(
         sets, config.network.variant, config.network.frame, config.reward, config.scale, config.folds
     )
     learned, validation = _split(examples, config.held_out)
     run = _Run(config, learned, target)
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "training.json").write_text(note, "utf-8")
     first = run.resume(out / "checkpoint.safetensors")
     provenance = Provenance(config.plain(), hashes, run.mean, run.deviation)
     with Logs(out, first) as logs, tqdm(total=config.epochs, initial=first, unit="epoch", disable=not progress) as bar:
@@ -120,14 +123,17 @@ def train(config: TrainingConfig, out: str | Path, device: str = "auto", progres
     return out / "weights.safetensors"
 
 
-def _claim(out: Path, config: TrainingConfig, data: tuple[str, ...]) -> None:
-    """Note what is trained here; refuse a folder that holds another training."""
-    wanted = json.dumps({"config": config.plain(), "data": data}, indent=2) + "\n"
+def _device(name: str) -> torch.device:
+    if name == "cuda" and not torch.cuda.is_available():
+        raise ConfigError("PyTorch finds no GPU here; train with --device cpu, or install PyTorch with CUDA")
+    return torch.device(("cuda" if torch.cuda.is_available() else "cpu") if name == "auto" else name)
+
+
+def _refuse_another(out: Path, wanted: str) -> None:
+    """Refuse a folder whose note says that it holds another training."""
     note = out / "training.json"
     if note.exists() and note.read_text("utf-8") != wanted:
         raise ConfigError(f"{out} holds a training with another configuration or other data; choose another folder")
-    out.mkdir(parents=True, exist_ok=True)
-    note.write_text(wanted, "utf-8")
 
 
 def _split(examples: Examples, held_out: float) -> tuple[Examples, Examples]:

@@ -9,7 +9,7 @@ import torch
 from few_folds import FOLDS, MIX, interaction
 from polyfold_fgpnp.affordance import PickConfig, coupled_pick, fold_region
 from polyfold_fgpnp.collect import collect
-from polyfold_fgpnp.dataset import load_dataset
+from polyfold_fgpnp.dataset import DatasetFolder, load_dataset
 from polyfold_fgpnp.examples import make_examples
 from polyfold_fgpnp.interaction import execute, explore
 from polyfold_fgpnp.learned import CoupledActionMap
@@ -69,6 +69,21 @@ def test_other_parameters_and_changed_shards_are_refused(folds_folder, tmp_path)
     shutil.copy(changed / "shards" / "00000.npz", changed / "shards" / "00001.npz")
     with pytest.raises(ConfigError, match="have changed"):
         load_dataset(changed)
+    with pytest.raises(ConfigError, match="have changed"):  # else the very command that resumes would bless them
+        collect(interaction(), FOLDS, changed, progress=False)
+
+
+def test_a_data_set_that_is_being_extended_is_not_complete_until_it_is_finished(folds_folder, tmp_path):
+    more = tmp_path / "more"
+    shutil.copytree(folds_folder, more)
+    folder = DatasetFolder(more, interaction().model_dump(mode="json"))
+    assert load_dataset(more).folds == FOLDS, "to open it changes nothing"
+    with np.load(more / "shards" / "00001.npz") as shard:
+        folder.write(3, dict(shard))
+    with pytest.raises(ConfigError, match="run the same `polyfold collect` again"):
+        load_dataset(more)
+    DatasetFolder(more, interaction().model_dump(mode="json")).finish()
+    assert load_dataset(more).folds > FOLDS
 
 
 def test_another_schema_is_refused_and_not_guessed(folds_folder, tmp_path):
@@ -121,12 +136,21 @@ def test_a_mix_is_read_strictly():
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [(["--seeds", "9-3", "--out", "x"], "A-B"), ([], "--out"), (["--describe", "nowhere"], "no data set")],
+    [
+        (["--seeds", "9-3", "--out", "x"], "A-B"),
+        ([], "--out"),
+        (["--describe", "nowhere"], "no data set"),
+        (["--edge-length", "1", "--out", "x"], "--edge-length"),
+        (["--folds", "0", "--out", "x"], "1 or more"),
+        (["--workers", "0", "--out", "x"], "1 or more"),
+        (["--kind", "tent", "--out", "x"], "no garment is called 'tent'"),
+    ],
 )
-def test_wrong_options_are_answered(arguments, message, capsys, tmp_path, monkeypatch):
+def test_wrong_options_are_answered_and_leave_no_folder_behind(arguments, message, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["collect", *arguments]) == 1
     assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.fixture(scope="module")

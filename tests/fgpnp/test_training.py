@@ -294,6 +294,23 @@ def test_a_variant_without_trials_says_what_to_collect(folds):
     assert set().union(*TRIALS_OF.values()) >= set(MIX)
 
 
+def test_trials_without_a_reward_are_left_out_since_they_would_make_every_weight_nan(folds):
+    flap_mm = np.where(np.arange(folds.folds) % 5 == 0, np.nan, folds["flap_mm"])
+    holed = type(folds)(folds.description, {**folds.columns, "flap_mm": flap_mm})
+    examples = make_examples([holed], "pair", "canonical", "particles", "log")
+    assert np.isfinite(examples.labels[examples.valid]).all()
+    assert examples.valid.sum() == np.isfinite(flap_mm).sum()
+
+
+def test_a_training_that_can_t_start_says_why_and_leaves_its_folder_to_a_corrected_one(folds_folder, tmp_path):
+    with pytest.raises(ConfigError, match="no data for 1sam"):  # the first trials have other recipes
+        train(small(folds_folder, "1sam", folds=2), tmp_path / "out", "cpu", progress=False)
+    if not torch.cuda.is_available():
+        with pytest.raises(ConfigError, match="no GPU"):
+            train(small(folds_folder, "1sam"), tmp_path / "out", "cuda", progress=False)
+    assert train(small(folds_folder, "1sam", epochs=1), tmp_path / "out", "cpu", progress=False).exists()
+
+
 def test_training_from_the_command_line(folds_folder, tmp_path, capsys):
     config = tmp_path / "csam.toml"
     config.write_text(f'data = ["{folds_folder}"]\nepochs = 1\n[network]\nbase = 4\nlevels = 2\n')
