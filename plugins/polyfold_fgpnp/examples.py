@@ -113,8 +113,7 @@ def _examples_of(data: Dataset, variant: str, frame: FrameName, reward: str, sca
     states = data["trial_state"][trials]
     kept = np.unique(states)
     most = int(np.bincount(states).max())
-    rewards = ("contour", "particles") if reward == "both" else (reward,)
-    labels = np.mean([label(data.reward(name), scale) for name in rewards], axis=0)
+    labels = np.mean([label(found, scale) for found in _rewards(data, reward)], axis=0)
     rows = {name: [] for name in ("images", "lines", "points", "geometry", "labels", "valid", "garments")}
     for state in tqdm(kept, unit="state", desc="views", disable=not sys.stderr.isatty()):
         mine = trials[states == state]
@@ -140,7 +139,12 @@ def _trials(data: Dataset, variant: str, reward: str, folds: int | None) -> NDAr
     """Trials that teach a variant, of the first so many; one without a reward would make every weight NaN."""
     trials = data.of_recipes(*TRIALS_OF[variant])
     trials = trials[trials < (folds or data.folds)]
-    return trials[np.isfinite(data.reward(reward)[trials])]
+    return trials[np.isfinite(_rewards(data, reward)).all(0)[trials]]
+
+
+def _rewards(data: Dataset, reward: str) -> NDArray[np.float64]:
+    """The rewards that make up a label, shape (R, T)."""
+    return np.stack([data.reward(name) for name in (("contour", "particles") if reward == "both" else (reward,))])
 
 
 def _ordered(picks: NDArray, line) -> NDArray:

@@ -13,6 +13,7 @@ from few_folds import MIX
 from polyfold_fgpnp import training
 from polyfold_fgpnp import weights as weights_module
 from polyfold_fgpnp.affordance import fold_region
+from polyfold_fgpnp.dataset import load_dataset
 from polyfold_fgpnp.examples import TRIALS_OF, label, make_examples
 from polyfold_fgpnp.learned import CoupledActionMap, OneActionMap, PairValue, TwoActionMaps, VertexLearned
 from polyfold_fgpnp.networks import NetworkConfig, ValueNetwork
@@ -339,3 +340,13 @@ def test_policies_and_verbs_are_listed_without_torch():
 @pytest.mark.parametrize("path", sorted((Path(__file__).parents[2] / "experiments/training").glob("*.toml")))
 def test_the_recorded_configurations_are_valid(path):
     assert read_config(path).data
+
+
+def test_both_rewards_teach_the_mean_of_their_labels(folds_folder):
+    data = [load_dataset(folds_folder)]
+    contour, particles, both = (
+        make_examples(data, "pair", "canonical", reward, "log") for reward in ("contour", "particles", "both")
+    )
+    assert both.valid.any()
+    assert both.labels == pytest.approx((contour.labels + particles.labels) / 2, abs=1e-5)
+    assert (contour.labels != particles.labels).any()
