@@ -1,6 +1,6 @@
 """How well policies pick on garments that nothing was trained on: ``python -m polyfold_fgpnp.heldout DATA POLICY...``.
 
-``DATA`` is a data set of ``polyfold collect --seeds 1100-1149 --mix uniform=16``. Each policy folds every state; a
+``DATA`` is a data set of ``polyfold collect --seeds 1150-1199 --mix uniform=16``. Each policy folds every state; a
 policy is written NAME or NAME=WEIGHTS. Prints two Markdown tables, which :mod:`polyfold_fgpnp.heldout_tables` explains:
 how well learned maps order the picks tried in a state, beside what learns nothing; and the error and regret of the pick
 that each policy chose, beside those of a random first pick. Where a policy refuses a state, that counts as leaving the
@@ -15,6 +15,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -24,11 +25,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold import plugins
-from polyfold.errors import ConfigError, PlanError
+from polyfold.errors import ConfigError, PlanError, PolyfoldError
 from polyfold.interfaces import Policy
 
 from .dataset import Dataset, load_dataset
-from .heldout_tables import correlation_table, regret_table
+from .heldout_tables import RECIPE, correlation_table, regret_table
 from .interaction import LINES_PER_STAGE, Interaction, execute, situations
 from .learned import CoupledActionMap, LearnedPolicy
 from .weights import weights_file
@@ -69,7 +70,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("policies", nargs="+", metavar="POLICY[=WEIGHTS]", help="such as caso, csam+caso=out/weights…")
     parser.add_argument("--workers", type=int, default=1, help="processes (default 1)")
     options = parser.parse_args(arguments)
-    data = load_dataset(options.data)
+    try:
+        _compare(load_dataset(options.data), options)
+    except PolyfoldError as error:
+        sys.exit(f"{parser.prog}: {error}")
+
+
+def _compare(data: Dataset, options: argparse.Namespace) -> None:
+    if not len(data.of_recipes(RECIPE)):
+        raise ConfigError(f"{options.data} has no random first picks; collect some with --mix {RECIPE}=16")
     contestants = [Contestant(text) for text in options.policies]
     errors = {one.text: _executed(options.data, data, one, options.workers) for one in contestants}
     policies = {one.text: one.create() for one in contestants}
@@ -80,7 +89,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _executed(path: Path, data: Dataset, contestant: Contestant, workers: int) -> NDArray[np.float64]:
-    """Error of the flap [mm] after the policy's action in every state, shape (S,); what is missing is executed."""
+    """Error [mm] after the policy's action in every state, shape (S,); what is missing is executed."""
     from tqdm import tqdm
 
     contestant.create()

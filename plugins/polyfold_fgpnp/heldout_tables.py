@@ -34,7 +34,7 @@ from .dataset import Dataset
 from .learned import CoupledActionMap
 from .ranks import rank_correlation
 
-__all__ = ["RANDOM", "correlation_table", "over_garments", "regret_table", "tried"]
+__all__ = ["RANDOM", "RECIPE", "correlation_table", "over_garments", "regret_table", "tried"]
 
 Floats = NDArray[np.float64]
 

@@ -72,9 +72,9 @@ class ValueNetwork(nn.Module):
         """Maps, shape (B, maps, H, W), of images in 0..1, shape (B, C, H, W), and lines, shape (B, 4)."""
         condition = _encoded(lines) if self.config.frame == "camera" else None
         height, width = images.shape[-2:]
-        x = functional.pixel_unshuffle(torch.cat([images, _coordinates(images)], 1), self.config.stem)
-        x = functional.pad(x, (0, -x.shape[-1] % 2 ** len(self.down), 0, -x.shape[-2] % 2 ** len(self.down)))
-        x = self.entry(x, condition)
+        multiple = self.config.stem * 2 ** len(self.down)
+        x = functional.pad(torch.cat([images, _coordinates(images)], 1), (0, -width % multiple, 0, -height % multiple))
+        x = self.entry(functional.pixel_unshuffle(x, self.config.stem), condition)
         passed = []
         for block in self.down:
             passed.append(x)

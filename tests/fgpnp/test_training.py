@@ -72,6 +72,13 @@ def test_the_camera_frame_trains_too(folds_folder, tmp_path):
     assert found.config["reward"] == "contour"
 
 
+@pytest.mark.parametrize("frame", ["canonical", "camera"])
+def test_pictures_of_any_size_get_a_map_of_their_size(frame):
+    network = ValueNetwork(NetworkConfig(frame=frame, base=4, levels=3)).eval()
+    images = torch.zeros(1, {"canonical": 2, "camera": 1}[frame], 102, 131)
+    assert network(images, torch.zeros(1, 4)).shape == (1, 1, 102, 131)
+
+
 def test_a_training_that_was_killed_ends_in_the_same_weights(folds_folder, tmp_path, monkeypatch, weights):
     save = training._Run.save
 
