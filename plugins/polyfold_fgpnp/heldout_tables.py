@@ -147,7 +147,7 @@ def regret_table(data: Dataset, errors: Mapping[str, Floats]) -> Table:
             ]
         )
     headers = ["pick", "states", "error [mm]", "median", "p90", "on flat cloth", "on folded cloth", "regret [mm]"]
-    note = f"Error of the flap's particles; regret: less the best of the random first picks tried; {_garments(data)}."
+    note = f"Error of flap and rest; regret: less the best of the random first picks tried; {_garments(data)}."
     return Table([*headers, "median regret", f"less {first} [mm]"], rows, note)
 
 
