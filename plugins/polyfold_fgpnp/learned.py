@@ -158,8 +158,8 @@ class CoupledActionMap(_WithPrior):
 
     The partner moves a little towards the first pick, as in training (see :func:`coupled_pick`). With a network that
     values pairs, a point's value is that of itself and its partner. To the value comes the pair's affordance, as a
-    share of the best one, times ``prior``; the paper has 0. On flaps unlike any in training it keeps the picks apart
-    where the network errs, and on t-shirts held out from training it lowers the error too (the flap, 13.8 to 13.5 mm, n = 120).
+    share of the best one, times ``prior``; the paper has 0. It steadies the choice on flaps unlike any in training, and
+    lowers the flap's error on t-shirts held out from training too (13.8 to 13.5 mm, n = 120).
     """
 
     variant: ClassVar[str] = "csam"
