@@ -38,9 +38,7 @@ class Collect:
             "--edge-length", type=float, default=0.018, metavar="M", help="of the mesh (default: 0.018)"
         )
         parser.add_argument("--mix", metavar="RECIPE=COUNT,...", help="picks tried from every state, by recipe")
-        parser.add_argument(
-            "--weights", type=Path, metavar="FILE", help="network (csam or pair) that the recipe chosen asks"
-        )
+        parser.add_argument("--weights", type=Path, metavar="FILE", help="or name: the network that chosen asks")
         parser.add_argument("--seed", type=int, default=0, help="of everything random (default: 0)")
 
     @staticmethod

@@ -13,7 +13,6 @@ file. After a change to the code of a policy or of the simulator, remove the fil
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 import sys
 from collections.abc import Iterator, Sequence
@@ -32,7 +31,7 @@ from .dataset import Dataset, load_dataset
 from .heldout_tables import RECIPE, correlation_table, regret_table
 from .interaction import LINES_PER_STAGE, Interaction, execute, situations
 from .learned import CoupledActionMap, LearnedPolicy
-from .weights import weights_file
+from .weights import file_hash, weights_file
 from .workers import in_processes
 
 __all__ = ["main"]
@@ -59,8 +58,7 @@ class Contestant:
         cls = plugins.component_class("policies", name)
         if not weights and not issubclass(cls, LearnedPolicy):
             return name
-        content = weights_file(weights or cls.Config().weights).read_bytes()
-        return f"{name}-{hashlib.sha256(content).hexdigest()[:12]}"
+        return f"{name}-{file_hash(weights_file(weights or cls.Config().weights))[:12]}"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -26,7 +25,7 @@ from .learned import CoupledActionMap
 from .lines import LINE_KINDS, PLAUSIBLE, RandomLine, random_line
 from .outcomes import Expectation, Outcome, expect
 from .trials import MIX, RECIPES, Flap, ValueMap, draw_trials
-from .weights import weights_file
+from .weights import file_hash, weights_file
 
 __all__ = [
     "LINES_PER_STAGE",
@@ -76,7 +75,7 @@ class Interaction(BaseModel):
         if not isinstance(given, Mapping) or given.get("weights") is None:
             return given
         file = weights_file(str(given["weights"]))
-        return {**given, "weights": file, "weights_hash": _hash_of(file)}
+        return {**given, "weights": file, "weights_hash": file_hash(file)}
 
     @model_validator(mode="after")
     def _weights_go_with_chosen(self) -> Interaction:
@@ -135,13 +134,9 @@ def value_policy(interaction: Interaction) -> CoupledActionMap | None:
 
 @lru_cache(maxsize=1)
 def _trained(weights: Path, expected: str | None) -> CoupledActionMap:
-    if not weights.is_file() or _hash_of(weights) != expected:
+    if not weights.is_file() or file_hash(weights) != expected:
         raise ConfigError(f"{weights} has changed since this collection began; put the old file back or start anew")
     return CoupledActionMap(CoupledActionMap.Config(weights=str(weights)))
-
-
-def _hash_of(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def trials_per_job(mix: Mapping[str, int]) -> int:

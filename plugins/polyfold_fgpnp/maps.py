@@ -34,7 +34,7 @@ class Maps:
     def configure(parser: argparse.ArgumentParser) -> None:
         """Add the options."""
         parser.add_argument("--policy", default="csam+caso", metavar="NAME", help="default: csam+caso")
-        parser.add_argument("--weights", default="", metavar="FILE", help="instead of those of the package")
+        parser.add_argument("--weights", default="", metavar="FILE", help="or name, instead of the default")
         parser.add_argument("--task", action="append", metavar="ID", help="first fold of this task; may be repeated")
         parser.add_argument("--seed", type=int, default=2000, help="of the garments (default: 2000)")
         parser.add_argument("--out", type=Path, default=Path("maps.png"), metavar="PNG", help="default: maps.png")

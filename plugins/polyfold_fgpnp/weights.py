@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from .networks import ValueNetwork
 
-__all__ = ["Provenance", "load_weights", "save_weights", "shipped_weights", "weights_file"]
+__all__ = ["Provenance", "file_hash", "load_weights", "save_weights", "shipped_weights", "weights_file"]
 
 SCHEMA = "2"
 
@@ -62,6 +62,11 @@ def weights_file(name: str) -> Path:
             "give one of these, or train your own with: polyfold train CONFIG.toml --out DIR"
         )
     return file
+
+
+def file_hash(file: Path) -> str:
+    """SHA-256 of a file of weights, by which data and results that came from it are told apart."""
+    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def save_weights(path: str | Path, network: ValueNetwork, provenance: Provenance) -> None:
