@@ -14,34 +14,21 @@ from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
 
-_PUBLIC = {
-    "Action": "polyfold.types",
-    "Camera": "polyfold.types",
-    "Decision": "polyfold.types",
-    "Episode": "polyfold.episode",
-    "Experiment": "polyfold.config",
-    "FoldLine": "polyfold.types",
-    "FoldedModel": "polyfold.polygon",
-    "Garment": "polyfold.garments",
-    "Observation": "polyfold.types",
-    "PolyfoldError": "polyfold.errors",
-    "RefusedError": "polyfold.errors",
-    "Scene": "polyfold.types",
-    "Subgoal": "polyfold.types",
-    "Template": "polyfold.polygon",
-    "Study": "polyfold.study",
-    "ablate": "polyfold.study",
-    "compare": "polyfold.results",
-    "fold": "polyfold.folding",
-    "garment": "polyfold.sources",
-    "grid": "polyfold.study",
-    "ground": "polyfold.sources",
-    "hookimpl": "polyfold.hookspecs",
-    "load": "polyfold.study",
-    "register": "polyfold.plugins",
-    "run": "polyfold.results",
-    "table": "polyfold.results",
+_HOMES = {
+    "polyfold.analysis": ("compare", "table"),
+    "polyfold.api": ("fold", "garment", "ground", "open", "run"),
+    "polyfold.config": ("Experiment",),
+    "polyfold.errors": ("PolyfoldError", "RefusedError"),
+    "polyfold.garments": ("Garment",),
+    "polyfold.geometry": ("Camera", "FoldLine"),
+    "polyfold.plugins": ("register",),
+    "polyfold.plugins.hookspecs": ("hookimpl",),
+    "polyfold.polygon": ("FoldedModel", "Template"),
+    "polyfold.studies": ("Study", "ablate", "grid", "load"),
+    "polyfold.types": ("Action", "Decision", "Episode", "Observation", "Scene", "Subgoal"),
 }
+_HOME_OF = {name: module for module, names in _HOMES.items() for name in names}
+_MODULES = {"plugins": "polyfold.plugins", "view": "polyfold.viz"}
 
 __all__ = [
     "Action",
@@ -68,6 +55,7 @@ __all__ = [
     "ground",
     "hookimpl",
     "load",
+    "open",
     "plugins",
     "register",
     "run",
@@ -76,25 +64,24 @@ __all__ = [
 
 if TYPE_CHECKING:
     from polyfold import plugins
+    from polyfold.analysis import compare, table
+    from polyfold.api import fold, garment, ground, open, run
     from polyfold.config import Experiment
-    from polyfold.episode import Episode
     from polyfold.errors import PolyfoldError, RefusedError
-    from polyfold.folding import fold
     from polyfold.garments import Garment
-    from polyfold.hookspecs import hookimpl
+    from polyfold.geometry import Camera, FoldLine
     from polyfold.plugins import register
+    from polyfold.plugins.hookspecs import hookimpl
     from polyfold.polygon import FoldedModel, Template
-    from polyfold.results import compare, run, table
-    from polyfold.sources import garment, ground
-    from polyfold.study import Study, ablate, grid, load
-    from polyfold.types import Action, Camera, Decision, FoldLine, Observation, Scene, Subgoal
+    from polyfold.studies import Study, ablate, grid, load
+    from polyfold.types import Action, Decision, Episode, Observation, Scene, Subgoal
 
 
 def __getattr__(name: str) -> Any:
-    if name == "plugins":
-        return import_module("polyfold.plugins")
-    if name in _PUBLIC:
-        return getattr(import_module(_PUBLIC[name]), name)
+    if name in _MODULES:
+        return import_module(_MODULES[name])
+    if name in _HOME_OF:
+        return getattr(import_module(_HOME_OF[name]), name)
     raise AttributeError(f"module 'polyfold' has no attribute {name!r}")
 
 

@@ -11,10 +11,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from polyfold.errors import ConfigError
 
-__all__ = ["Choice", "Experiment", "load", "read_toml", "to_toml"]
+__all__ = ["ComponentSpec", "Experiment", "load", "read_toml", "to_toml"]
 
 
-class Choice(BaseModel):
+class ComponentSpec(BaseModel):
     """A component by name, with parameters. In TOML ``policy = "caso"`` or a table ``[policy]`` with ``name``."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -37,13 +37,13 @@ class Experiment(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    agent: Choice = Choice(name="polyfold")
-    simulator: Choice = Choice(name="xpbd")
-    segmenter: Choice = Choice(name="colour")
-    grounding: Choice = Choice(name="polygon")
-    planner: Choice = Choice(name="hierarchical")
-    policy: Choice = Choice(name="caso")
-    llm: Choice = Choice(name="rules")
+    agent: ComponentSpec = ComponentSpec(name="polyfold")
+    simulator: ComponentSpec = ComponentSpec(name="xpbd")
+    segmenter: ComponentSpec = ComponentSpec(name="colour")
+    grounding: ComponentSpec = ComponentSpec(name="polygon")
+    planner: ComponentSpec = ComponentSpec(name="hierarchical")
+    policy: ComponentSpec = ComponentSpec(name="caso")
+    llm: ComponentSpec = ComponentSpec(name="rules")
     guidance: Literal["steps", "final"] = "steps"
     """What agents that need guidance get: accurate subgoals, or the final goal alone."""
 
@@ -56,16 +56,9 @@ class Experiment(BaseModel):
         """
         return _validated(settings, "the experiment")
 
-    def override(self, settings: dict[str, str | dict[str, Any] | Choice]) -> Experiment:
+    def override(self, settings: dict[str, str | dict[str, Any] | ComponentSpec]) -> Experiment:
         """A copy with some components replaced."""
         return Experiment.of(**{**self.model_dump(), **settings})
-
-    def create(self, kind: str, field: str) -> Any:
-        """Construct the component chosen in ``field``, of the plural ``kind``."""
-        from polyfold import plugins
-
-        choice: Choice = getattr(self, field)
-        return plugins.create(kind, choice.name, choice.params)
 
 
 def load(path: str | Path) -> Experiment:

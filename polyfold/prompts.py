@@ -37,7 +37,7 @@ from pathlib import Path
 from typing import Any
 
 from polyfold.errors import ConfigError
-from polyfold.interfaces import Message
+from polyfold.types import Message
 
 __all__ = ["Example", "Prompt", "load_prompt", "prompt_folders", "prompt_names"]
 

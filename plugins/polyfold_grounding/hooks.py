@@ -1,6 +1,6 @@
 """Registers the groundings."""
 
-from polyfold.hookspecs import hookimpl
+from polyfold.plugins.hookspecs import hookimpl
 
 
 @hookimpl

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from polyfold.geometry import FoldLine
 from polyfold.polygon import Template
-from polyfold.types import FoldLine, Observation, Scene
+from polyfold.types import Observation, Scene
 from polyfold_grounding.polygon import PolygonGrounding
 
 __all__ = ["KeypointsGrounding"]

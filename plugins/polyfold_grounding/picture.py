@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.geometry import contour_of
-from polyfold.interfaces import Grounding
+from polyfold.geometry import FoldLine, contour_of
+from polyfold.plugins.interfaces import Grounding
 from polyfold.polygon import Template
-from polyfold.types import FoldLine, Observation, Scene
+from polyfold.types import Observation, Scene
 from polyfold_grounding.keypoints import KeypointsGrounding
 from polyfold_grounding.polygon import PolygonGrounding
 

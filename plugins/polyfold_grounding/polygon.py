@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from polyfold.geometry import FoldLine
 from polyfold.polygon import FoldedModel, Template
-from polyfold.types import FoldLine, Observation, Scene
+from polyfold.types import Observation, Scene
 
 __all__ = ["PolygonGrounding"]
 

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import PlanError
-from polyfold.geometry import resample
+from polyfold.geometry import FoldLine, resample
 from polyfold.polygon import FoldedModel
-from polyfold.types import FoldLine
 from polyfold_grounding import fold_terms
 from polyfold_grounding.evidence import Evidence
 

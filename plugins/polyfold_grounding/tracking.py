@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import PlanError
-from polyfold.geometry import chamfer, resample
+from polyfold.geometry import FoldLine, chamfer, resample
 from polyfold.polygon import FoldedModel, Template
-from polyfold.types import FoldLine
 from polyfold_grounding.evidence import Evidence
 from polyfold_grounding.flat import fit_flat
 from polyfold_grounding.naming import named_by_top

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from polyfold.errors import ConfigError
-from polyfold.interfaces import Reply
+from polyfold.types import Reply
 from polyfold_llms.cassette import read_lines
 from polyfold_llms.keys import scrubbed
 from polyfold_llms.models import cost_of, find_model

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from polyfold.errors import ConfigError, LLMError
-from polyfold.interfaces import Reply
+from polyfold.types import Reply
 from polyfold_llms.keys import contains_secret
 from polyfold_llms.requests import VERSION, difference, farthest_numbers, key_of, nearby_key_of
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from polyfold.errors import ConfigError, LLMAccessError, LLMError
-from polyfold.interfaces import Reply
+from polyfold.types import Reply
 from polyfold_llms.batch import FORMS, Missing, answers_in, exported, missing_in, priced
 from polyfold_llms.cassette import Cassette, open_cassette
 

@@ -1,12 +1,11 @@
 """Registers the language-model backends and the verb for cassettes."""
 
-from polyfold.hookspecs import hookimpl
+from polyfold.plugins.hookspecs import hookimpl
 
 
 @hookimpl
 def register_llms(register):
     """Register the backends."""
-    register("rules", "polyfold_llms.rules:RulesLLM", "deterministic solver of fold language; no key, no network")
     register("litellm", "polyfold_llms.litellm_backend:LiteLLM", "litellm:ROUTE/MODEL, any provider or local server")
     register("record", "polyfold_llms.recording:RecordLLM", "record:CASSETTE, another backend, recorded")
     register("replay", "polyfold_llms.recording:ReplayLLM", "replay:CASSETTE, what was recorded; no key, no network")

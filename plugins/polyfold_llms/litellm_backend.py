@@ -22,7 +22,7 @@ from typing import Any, ClassVar
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import ConfigError, LLMAccessError
-from polyfold.interfaces import Message, Reply
+from polyfold.types import Message, Reply
 from polyfold_llms import models
 from polyfold_llms.keys import contains_secret, scrub, scrubbed
 from polyfold_llms.transport import Patience, TransportError, call, header, slot

@@ -15,9 +15,9 @@ from typing import Any, ClassVar
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import ConfigError, LLMAccessError, LLMError
-from polyfold.interfaces import Message, Reply
 from polyfold.plugins import create
-from polyfold.transcript import request_place
+from polyfold.rollout import request_place
+from polyfold.types import Message, Reply
 from polyfold_llms.cassette import append_line, check_no_secret, models_in, open_cassette
 from polyfold_llms.requests import key_of, request_of
 

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import zip_longest
 from typing import Any
 
-from polyfold.interfaces import Message
-from polyfold.transcript import without_pictures
+from polyfold.rollout import without_pictures
+from polyfold.types import Message
 
 __all__ = ["VERSION", "difference", "farthest_numbers", "key_of", "nearby_key_of", "request_of"]
 

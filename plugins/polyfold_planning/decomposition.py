@@ -6,10 +6,10 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from polyfold.interfaces import Conversation, Reply
+from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
 from polyfold.prompts import load_prompt
-from polyfold.types import Subgoal
+from polyfold.types import Reply, Subgoal
 from polyfold_planning.grammar import check_subgoal
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import answer_object, subgoals_in

@@ -6,9 +6,9 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from polyfold.interfaces import Conversation, Reply
+from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
-from polyfold.types import Action, Scene, Subgoal
+from polyfold.types import Action, Reply, Scene, Subgoal
 from polyfold_planning.decomposition import SubgoalsConfig, split
 from polyfold_planning.motions import check_action
 from polyfold_planning.repair import ask_until_valid

@@ -6,11 +6,11 @@ import numpy as np
 from pydantic import Field
 
 from polyfold.errors import PlanError
-from polyfold.geometry import signed_distance
-from polyfold.interfaces import Conversation, Reply
+from polyfold.geometry import FoldLine, signed_distance
+from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
 from polyfold.prompts import load_prompt
-from polyfold.types import FoldLine, Scene, Subgoal
+from polyfold.types import Reply, Scene, Subgoal
 from polyfold_planning.decomposition import SubgoalsConfig, split
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import answer_object, fold_line_in

@@ -1,6 +1,6 @@
 """Registers the planners."""
 
-from polyfold.hookspecs import hookimpl
+from polyfold.plugins.hookspecs import hookimpl
 
 
 @hookimpl

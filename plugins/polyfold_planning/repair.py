@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from polyfold.errors import PlanError, RefusedError
-from polyfold.interfaces import Conversation, Reply
+from polyfold.plugins.interfaces import Conversation
 from polyfold.prompts import Prompt
+from polyfold.types import Reply
 
 __all__ = ["ask_until_valid"]
 

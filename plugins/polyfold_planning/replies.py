@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from polyfold.errors import PlanError, RefusedError
-from polyfold.interfaces import Reply
-from polyfold.types import Action, FoldLine
+from polyfold.geometry import FoldLine
+from polyfold.types import Action, Reply
 
 __all__ = ["action_in", "answer_object", "fold_line_in", "says_done", "subgoals_in"]
 

@@ -6,10 +6,10 @@ from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from polyfold.interfaces import Conversation, Reply
+from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
 from polyfold.prompts import load_prompt
-from polyfold.types import Action, Scene, Subgoal
+from polyfold.types import Action, Reply, Scene, Subgoal
 from polyfold_planning.motions import check_action
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import action_in, answer_object, says_done

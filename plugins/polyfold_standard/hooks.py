@@ -1,15 +1,15 @@
 """Registers the garments, the colour segmenter, the agents and the standard tasks."""
 
-from polyfold.hookspecs import hookimpl
+from polyfold.plugins.hookspecs import hookimpl
 
 
 @hookimpl
 def register_garments(register):
     """Register the kinds of garment."""
-    register("square", "polyfold_standard.square:Square", "square cloth, one layer")
-    register("rectangle", "polyfold_standard.rectangle:Rectangle", "rectangular cloth, one layer")
-    register("tshirt", "polyfold_standard.tshirt:TShirt", "t-shirt, two layers")
-    register("pants", "polyfold_standard.pants:Pants", "pants, two layers")
+    register("square", "polyfold_standard.garments.square:Square", "square cloth, one layer")
+    register("rectangle", "polyfold_standard.garments.rectangle:Rectangle", "rectangular cloth, one layer")
+    register("tshirt", "polyfold_standard.garments.tshirt:TShirt", "t-shirt, two layers")
+    register("pants", "polyfold_standard.garments.pants:Pants", "pants, two layers")
 
 
 @hookimpl
@@ -26,12 +26,15 @@ def register_segmenters(register):
 
 @hookimpl
 def register_agents(register):
-    """Register the agents: the whole method, and the two floors every result is compared with."""
-    register("polyfold", "polyfold.agent:PolyFoldAgent", "segmenter, grounding, planner and policy")
-    register("oracle", "polyfold_standard.oracle:Oracle", "the task's true fold lines, picks by policy (privileged)")
-    register("noop", "polyfold_standard.floors:Noop", "does nothing")
+    """Register the oracle, and the two baselines that every result is compared with."""
     register(
-        "random", "polyfold_standard.floors:Random", "random picks on the cloth, places mirrored across a random line"
+        "oracle", "polyfold_standard.agents.oracle:Oracle", "the task's true fold lines, picks by policy (privileged)"
+    )
+    register("noop", "polyfold_standard.agents.baselines:Noop", "does nothing")
+    register(
+        "random",
+        "polyfold_standard.agents.baselines:Random",
+        "random picks on the cloth, places mirrored across a random line",
     )
 
 

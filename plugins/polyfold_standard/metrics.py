@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.geometry import iou, rotate, turn_onto
-from polyfold.scoring import Outcome
+from polyfold.types import Outcome
 
 __all__ = ["MPPE", "MIoU", "MovedPartError"]
 

@@ -6,7 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from polyfold.types import Camera, Observation
+from polyfold.geometry import Camera
+from polyfold.types import Observation
 
 __all__ = ["TABLE", "take_picture"]
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.types import Action, Camera
+from polyfold.geometry import Camera
+from polyfold.types import Action
 
 __all__ = ["Grasp", "Motion", "plan_motion", "take_hold"]
 

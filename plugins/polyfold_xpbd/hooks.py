@@ -1,6 +1,6 @@
 """Registers the ``xpbd`` simulator."""
 
-from polyfold.hookspecs import hookimpl
+from polyfold.plugins.hookspecs import hookimpl
 
 
 @hookimpl

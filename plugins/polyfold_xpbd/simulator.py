@@ -12,7 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import SimulationError
 from polyfold.garments import Garment, Mesh
-from polyfold.types import Action, Camera, Observation, SimState
+from polyfold.geometry import Camera
+from polyfold.types import Action, Observation, SimState
 
 if TYPE_CHECKING:
     from polyfold_xpbd.solver import Solver

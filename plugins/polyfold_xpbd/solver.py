@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.garments import Mesh
-from polyfold.types import Action, Camera
+from polyfold.geometry import Camera
+from polyfold.types import Action
 from polyfold_xpbd.compiled import DIVERGED, SETTLED, advance, vertex_normals
 from polyfold_xpbd.grasp import plan_motion, take_hold
 from polyfold_xpbd.model import ClothModel, build_model

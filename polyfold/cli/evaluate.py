@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from polyfold.thumbnails import PICTURES
+from polyfold.studies import PICTURES
 
 __all__ = ["configure", "run"]
 
@@ -29,7 +29,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run what is missing and print the table."""
-    from polyfold import results, study
+    from polyfold.analysis import _results as results
+    from polyfold.studies import _study as study
 
     chosen = study.load(arguments.config)
     if arguments.garments is not None:

@@ -25,7 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Fold, show what happens as it happens, and save the result."""
-    from polyfold.folding import fold
+    from polyfold.api import fold
 
     experiment = experiment_from(arguments)
     garment = garment_from(arguments, experiment)

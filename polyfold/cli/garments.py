@@ -18,7 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw the sheet."""
-    from polyfold import plugins, view
+    from polyfold import plugins, viz
 
     kinds = arguments.garment or plugins.names("garments")
     simulator = plugins.create("simulators", "xpbd")
@@ -30,6 +30,6 @@ def run(arguments: argparse.Namespace) -> int:
             pictures[garment.name] = simulator.reset(garment, seed).rgb
     simulator.close()
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
-    view.garment_sheet(pictures, columns=arguments.count, path=arguments.out)
+    viz.garment_sheet(pictures, columns=arguments.count, path=arguments.out)
     print(f"{len(pictures)} garments: {arguments.out}")
     return 0

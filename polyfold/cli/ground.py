@@ -26,14 +26,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Fit, draw and report."""
-    from polyfold import view
-    from polyfold.sources import ground
+    from polyfold import viz
+    from polyfold.api import ground
 
     found = ground(arguments.garment, **_source(arguments.source), experiment=experiment_from(arguments))
     out = arguments.out or Path(f"{arguments.source.stem}-polygon.png")
     out.parent.mkdir(parents=True, exist_ok=True)
     assert found.scene.model is not None
-    view.save(view.grounding_picture(found.rgb, found.scene.model, arguments.source.name), out)
+    viz.save(viz.grounding_picture(found.rgb, found.scene.model, arguments.source.name), out)
     keypoints = {name: [round(float(x), 1), round(float(y), 1)] for name, (x, y) in found.keypoints.items()}
     if arguments.json:
         report = {"keypoints": keypoints, "residual_px": round(found.scene.residual, 2), "picture": str(out)}
@@ -52,6 +52,6 @@ def _source(path: Path) -> dict[str, Path]:
     """What a file is: an outline by its ending, a mask if it is black and white, else a photo."""
     if path.suffix.lower() in OUTLINES:
         return {"outline": path}
-    from polyfold.sources import is_mask
+    from polyfold.api._loaders import is_mask
 
     return {"mask": path} if is_mask(path) else {"image": path}

@@ -7,7 +7,7 @@ import json
 from typing import Any
 
 from polyfold import plugins
-from polyfold.hookspecs import KINDS
+from polyfold.plugins.hookspecs import KINDS
 
 __all__ = ["configure", "run"]
 

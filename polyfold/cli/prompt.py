@@ -39,12 +39,12 @@ def run(arguments: argparse.Namespace) -> int:
         print("\n".join(prompt_names()))
         return 0
     entry = _asked(arguments)
-    tokens, how = _tokens(entry["messages"], arguments.model)
+    tokens, how = _tokens(entry.messages, arguments.model)
     if arguments.json:
-        shown = {name: entry[name] for name in ("role", "step", "params", "messages")}
+        shown = {name: getattr(entry, name) for name in ("role", "step", "params", "messages")}
         print(json.dumps({**shown, "tokens": tokens, "counted": how}, ensure_ascii=False))
         return 0
-    for message in entry["messages"]:
+    for message in entry.messages:
         print(f"--- {message['role']}\n{_text(message)}\n")
     print(f"--- {tokens} tokens ({how}), parameters {json.dumps(entry['params'])}")
     return 0
@@ -52,20 +52,20 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _asked(arguments: argparse.Namespace) -> Mapping[str, Any]:
     """The request in a role and at a step of an episode. Raises ConfigError if nothing of the kind was asked."""
-    from polyfold.episode import run_episode
     from polyfold.errors import ConfigError
+    from polyfold.rollout import run_episode
 
     experiment = experiment_from(arguments)
     garment = garment_from(arguments, experiment)
     episode = run_episode(experiment, garment, arguments.instruction, arguments.seed)
-    entries = episode.transcript.entries
-    wanted = [entry for entry in entries if entry["role"] == arguments.role]
+    entries = episode.calls
+    wanted = [entry for entry in entries if entry.role == arguments.role]
     if not wanted:
-        roles = ", ".join(dict.fromkeys(entry["role"] for entry in entries)) or "none"
+        roles = ", ".join(dict.fromkeys(entry.role for entry in entries)) or "none"
         raise ConfigError(_with_failure(f"nothing was asked in the role {arguments.role!r}, but in {roles}", episode))
-    found = [entry for entry in wanted if entry["step"] in (None, arguments.step)]
+    found = [entry for entry in wanted if entry.step in (None, arguments.step)]
     if not found:
-        steps = ", ".join(str(step) for step in dict.fromkeys(entry["step"] for entry in wanted))
+        steps = ", ".join(str(step) for step in dict.fromkeys(entry.step for entry in wanted))
         raise ConfigError(
             _with_failure(f"{arguments.role!r} was not asked at step {arguments.step}, but at {steps}", episode)
         )

@@ -24,8 +24,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the page and say where it is."""
-    from polyfold.report import write_report
-    from polyfold.results import open_results
+    from polyfold.analysis import open_results
+    from polyfold.viz.report import write_report
 
     noise = None if arguments.noise_floor is None else open_results(arguments.noise_floor)
     path = write_report(arguments.run_directory, arguments.out, noise)

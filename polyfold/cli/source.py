@@ -30,7 +30,7 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
 
 def garment_from(arguments: argparse.Namespace, experiment: Experiment) -> Garment:
     """The garment that the options describe. Raises GarmentError or GroundingError with what to do."""
-    from polyfold.sources import garment
+    from polyfold.api import garment
 
     return garment(
         arguments.garment,

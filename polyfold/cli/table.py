@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from polyfold.tables import FORMATS
+from polyfold.analysis._tables import FORMATS
 
 __all__ = ["configure", "run"]
 
@@ -29,8 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the table."""
-    from polyfold.providers import provider_table
-    from polyfold.results import compare, open_results, table
+    from polyfold.analysis import compare, open_results, provider_table, table
 
     found = open_results(arguments.out)
     found = found.of_length(arguments.steps) if arguments.steps else found

@@ -24,7 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _list_suites() -> None:
     from polyfold import plugins
-    from polyfold.judging import suite
+    from polyfold.evaluation import suite
 
     for name in plugins.names("tasks"):
         found = suite(name)
@@ -32,8 +32,8 @@ def _list_suites() -> None:
 
 
 def _list_tasks(name: str, kind: str | None) -> None:
-    from polyfold.guidance import describe
-    from polyfold.judging import suite
+    from polyfold.evaluation import suite
+    from polyfold.tasks import describe
 
     found = suite(name)
     for task in found.tasks:

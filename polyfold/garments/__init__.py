@@ -1,14 +1,14 @@
 """Garments: triangle meshes with named keypoints, and how to build them from panels, files and real outlines."""
 
-from polyfold.garments.garment import Garment, Mesh
-from polyfold.garments.naming import name_by_pose
-from polyfold.garments.obj import load_obj
-from polyfold.garments.outline import Outline, curved_outline
-from polyfold.garments.outline_files import load_mask, load_outline, load_picture, outline_from_photo
-from polyfold.garments.panels import mesh_panels
-from polyfold.garments.pattern import Pattern
-from polyfold.garments.silhouette import find_cloth
-from polyfold.garments.twin import twin_from_outline
+from polyfold.garments._garment import Garment, Mesh
+from polyfold.garments._naming import name_by_pose
+from polyfold.garments._obj import load_obj
+from polyfold.garments._outline import Outline, curved_outline
+from polyfold.garments._outline_files import load_mask, load_outline, load_picture, outline_from_photo
+from polyfold.garments._panels import mesh_panels
+from polyfold.garments._pattern import Pattern
+from polyfold.garments._silhouette import find_cloth
+from polyfold.garments._twin import twin_from_outline
 
 __all__ = [
     "Garment",

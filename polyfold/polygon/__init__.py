@@ -3,11 +3,11 @@
 A new kind of garment needs one :class:`Template`; see its docstring for a complete example.
 """
 
-from polyfold.polygon.folded import FoldedModel, VertexState
-from polyfold.polygon.generator import Generator, SymmetricGenerator
-from polyfold.polygon.layers import Facet, fold_facets
-from polyfold.polygon.penalties import Penalty, PenaltySet, angle_range, offset_range, position_range, ratio_range
-from polyfold.polygon.template import Template
+from polyfold.polygon._folded import FoldedModel, VertexState
+from polyfold.polygon._generator import Generator, SymmetricGenerator
+from polyfold.polygon._layers import Facet, fold_facets
+from polyfold.polygon._penalties import Penalty, PenaltySet, angle_range, offset_range, position_range, ratio_range
+from polyfold.polygon._template import Template
 
 __all__ = [
     "Facet",

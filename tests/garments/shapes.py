@@ -1,12 +1,17 @@
 """Shared by the garment tests: the standard kinds, and what a mesh is measured by."""
 
 import numpy as np
-from polyfold_standard.pants import Pants
-from polyfold_standard.rectangle import Rectangle
-from polyfold_standard.square import Square
-from polyfold_standard.tshirt import TShirt
+from polyfold_standard.garments.pants import Pants
+from polyfold_standard.garments.rectangle import Rectangle
+from polyfold_standard.garments.square import Square
+from polyfold_standard.garments.tshirt import TShirt
 
 KINDS = {"square": Square(), "rectangle": Rectangle(), "tshirt": TShirt(), "pants": Pants()}
+
+
+def pattern(kind):
+    """How a kind is sewn."""
+    return KINDS[kind].pattern
 
 
 def triangle_areas(mesh):

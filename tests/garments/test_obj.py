@@ -2,7 +2,7 @@ import json
 
 import numpy as np
 import pytest
-from shapes import KINDS, assert_sound, edges, rims
+from shapes import KINDS, assert_sound, edges, pattern, rims
 
 from polyfold.errors import GarmentError
 from polyfold.garments import load_obj
@@ -54,7 +54,7 @@ def test_worn_trousers_are_laid_flat(files, garment, axes):
     if axes != (0, 1, 2):
         positions = positions * [1, -1, 1] if axes == (0, 2, 1) else positions * [1, 1, -1]
     path = write_obj(files[0], positions, garment.mesh)
-    flat = load_obj(path, files[1], "pants", edge_length=0.02)
+    flat = load_obj(path, files[1], "pants", pattern("pants"), edge_length=0.02)
     assert flat.name == "jeans"
     assert_sound(flat.mesh, 0.02, least_angle=12.0)
     assert rims(flat.mesh) == 3
@@ -70,8 +70,8 @@ def test_worn_trousers_are_laid_flat(files, garment, axes):
 def test_size_in_metres_wins_over_the_file_s_units(files, garment):
     path = write_obj(files[0], 100 * worn_pants(garment), garment.mesh)
     with pytest.raises(GarmentError, match="give its longest side in metres"):
-        load_obj(path, files[1], "pants")
-    flat = load_obj(path, files[1], "pants", size_m=0.6, edge_length=0.02)
+        load_obj(path, files[1], "pants", pattern("pants"))
+    flat = load_obj(path, files[1], "pants", pattern("pants"), size_m=0.6, edge_length=0.02)
     assert np.ptp(flat.mesh.vertices, axis=0).max() == pytest.approx(0.6, rel=0.03)
 
 
@@ -84,7 +84,7 @@ def test_inconsistent_winding_and_scraps_are_put_right(files, garment):
     count = len(garment.mesh.vertices)
     button = ["v 0 0 1", "v 0.001 0 1", "v 0 0.001 1", f"f {count + 1} {count + 2} {count + 3}"]
     files[0].write_text("\n".join(text + button))
-    assert rims(load_obj(*files, "pants", edge_length=0.02).mesh) == 3
+    assert rims(load_obj(*files, "pants", pattern("pants"), edge_length=0.02).mesh) == 3
 
 
 def test_vertices_repeated_along_texture_seams_are_joined(files, garment):
@@ -96,12 +96,12 @@ def test_vertices_repeated_along_texture_seams_are_joined(files, garment):
         a, b, c = (copies.get(vertex, vertex) + 1 if panel == 1 else vertex + 1 for vertex in face)
         lines.append(f"f {a} {b} {c}" if panel == 1 else f"f {a} {c} {b}")
     files[0].write_text("\n".join(lines))
-    assert rims(load_obj(*files, "pants", edge_length=0.02).mesh) == 3
+    assert rims(load_obj(*files, "pants", pattern("pants"), edge_length=0.02).mesh) == 3
 
 
 def test_a_garment_that_is_flat_already_may_have_front_and_back_in_one_place(files, garment):
     flat = np.column_stack([garment.mesh.vertices, np.zeros(len(garment.mesh.vertices))])
-    loaded = load_obj(write_obj(files[0], flat, garment.mesh), files[1], "pants", edge_length=0.02)
+    loaded = load_obj(write_obj(files[0], flat, garment.mesh), files[1], "pants", pattern("pants"), edge_length=0.02)
     np.testing.assert_allclose(np.ptp(loaded.mesh.vertices, axis=0), np.ptp(garment.mesh.vertices, axis=0), rtol=0.03)
 
 
@@ -110,7 +110,9 @@ def test_a_flat_cloth_stays_what_it_is(tmp_path):
     flat = np.column_stack([garment.mesh.vertices, np.zeros(len(garment.mesh.vertices))])
     write_obj(tmp_path / "towel.obj", flat, garment.mesh)
     (tmp_path / "keypoints.json").write_text(json.dumps(garment.keypoints))
-    loaded = load_obj(tmp_path / "towel.obj", tmp_path / "keypoints.json", "rectangle", edge_length=0.02)
+    loaded = load_obj(
+        tmp_path / "towel.obj", tmp_path / "keypoints.json", "rectangle", pattern("rectangle"), edge_length=0.02
+    )
     np.testing.assert_allclose(np.ptp(loaded.mesh.vertices, axis=0), np.ptp(garment.mesh.vertices, axis=0), rtol=0.02)
     assert loaded.mesh.layers == 1
 
@@ -123,7 +125,7 @@ def test_a_bowl_does_not_lie_flat(tmp_path):
     write_obj(tmp_path / "bowl.obj", np.nan_to_num(bowl) * 0.2, garment.mesh)
     (tmp_path / "keypoints.json").write_text(json.dumps(garment.keypoints))
     with pytest.raises(GarmentError, match="does not lie flat"):
-        load_obj(tmp_path / "bowl.obj", tmp_path / "keypoints.json", "square")
+        load_obj(tmp_path / "bowl.obj", tmp_path / "keypoints.json", "square", pattern("square"))
 
 
 def test_a_fin_is_not_a_manifold(files, garment):
@@ -132,7 +134,7 @@ def test_a_fin_is_not_a_manifold(files, garment):
     count = len(garment.mesh.vertices)
     files[0].write_text(files[0].read_text() + f"v 0 0 3\nf {a} {b} {count + 1}\n")
     with pytest.raises(GarmentError, match="not a manifold"):
-        load_obj(*files, "pants")
+        load_obj(*files, "pants", pattern("pants"))
 
 
 def test_meshes_that_cannot_be_used_are_refused(files, tmp_path):
@@ -140,9 +142,9 @@ def test_meshes_that_cannot_be_used_are_refused(files, tmp_path):
     for text, words in (("", "no finite vertices"), (vertices, "no faces"), ("v a b c", "broken vertex")):
         files[0].write_text(text)
         with pytest.raises(GarmentError, match=words):
-            load_obj(*files, "pants")
+            load_obj(*files, "pants", pattern("pants"))
     with pytest.raises(GarmentError, match="give an OBJ file"):
-        load_obj(tmp_path / "absent.obj", files[1], "pants")
+        load_obj(tmp_path / "absent.obj", files[1], "pants", pattern("pants"))
 
 
 @pytest.mark.parametrize(
@@ -158,11 +160,11 @@ def test_wrong_keypoints_are_named(files, change, words):
     keypoints = {**json.loads(files[1].read_text()), **change}
     files[1].write_text(json.dumps({name: vertex for name, vertex in keypoints.items() if vertex is not None}))
     with pytest.raises(GarmentError, match=words):
-        load_obj(*files, "pants")
+        load_obj(*files, "pants", pattern("pants"))
 
 
 def test_keypoints_must_be_an_object(files):
     for text in ("[]", "{", "{}"):
         files[1].write_text(text)
         with pytest.raises(GarmentError, match="JSON object"):
-            load_obj(*files, "pants")
+            load_obj(*files, "pants", pattern("pants"))

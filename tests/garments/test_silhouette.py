@@ -8,8 +8,8 @@ from shapes import KINDS
 
 from polyfold.errors import GarmentError, GroundingError
 from polyfold.garments import find_cloth, load_mask, load_outline, outline_from_photo
-from polyfold.geometry import fill_polygon, iou, rotate
-from polyfold.types import Camera, Observation
+from polyfold.geometry import Camera, fill_polygon, iou, rotate
+from polyfold.types import Observation
 
 TABLE = (236, 236, 232)
 

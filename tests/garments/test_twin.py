@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapes import KINDS, assert_sound, rims
+from shapes import KINDS, assert_sound, pattern, rims
 
 from polyfold.errors import GarmentError
 from polyfold.garments import twin_from_outline
@@ -65,7 +65,7 @@ def seen(garment, scale=500.0, angle=0.0):
 @pytest.mark.parametrize("line", SAMPLE, ids=lambda line: Path(line["image"]).parent.name + line["image"][-27:-12])
 def test_real_outlines_become_sound_twins(line):
     kind, outline, keypoints = annotation(line)
-    twin = twin_from_outline(outline, kind, keypoints, edge_length=0.02)
+    twin = twin_from_outline(outline, kind, keypoints, pattern(kind), edge_length=0.02)
     pattern = KINDS[kind].pattern
     assert_sound(twin.mesh, 0.02, least_angle=12.0, shortest=0.25)
     assert twin.mesh.layers == pattern.layers
@@ -86,7 +86,9 @@ def test_real_outlines_become_sound_twins(line):
 def test_a_twin_is_the_garment_again_whatever_its_pose_in_the_picture(kind, angle, scale):
     garment = KINDS[kind].generate(2005, 0.02)
     size = float(np.ptp(garment.mesh.vertices, axis=0).max())
-    twin = twin_from_outline(*seen(garment, scale, angle)[:1], kind, seen(garment, scale, angle)[1], size, 0.02)
+    twin = twin_from_outline(
+        *seen(garment, scale, angle)[:1], kind, seen(garment, scale, angle)[1], pattern(kind), size, 0.02
+    )
     masks = [fill_polygon(mesh.vertices[mesh.boundary] * 400 + 250, 500, 500) for mesh in (garment.mesh, twin.mesh)]
     assert iou(*masks) > 0.93
     for name, vertex in garment.keypoints.items():
@@ -97,7 +99,7 @@ def test_a_twin_is_the_garment_again_whatever_its_pose_in_the_picture(kind, angl
 def test_size_is_the_longest_side():
     outline, keypoints = seen(KINDS["pants"].generate(2001, 0.03))
     for size in (0.5, 1.1):
-        twin = twin_from_outline(outline, "pants", keypoints, size, 0.02)
+        twin = twin_from_outline(outline, "pants", keypoints, pattern("pants"), size, 0.02)
         assert np.ptp(twin.mesh.vertices, axis=0).max() == pytest.approx(size, rel=0.03)
 
 
@@ -107,7 +109,7 @@ def test_a_wiggly_outline_with_a_loop_is_repaired():
     wiggly = outline + np.random.default_rng(0).normal(0, 1.2, outline.shape)
     k = len(wiggly) // 3
     wiggly = np.vstack([wiggly[: k + 3], wiggly[k - 2 : k], wiggly[k + 3 :]])
-    twin = twin_from_outline(wiggly, "tshirt", keypoints, 0.8, 0.02)
+    twin = twin_from_outline(wiggly, "tshirt", keypoints, pattern("tshirt"), 0.8, 0.02)
     assert_sound(twin.mesh, 0.02, least_angle=12.0)
 
 
@@ -116,7 +118,7 @@ def test_keypoints_off_the_outline_are_moved_onto_it():
     outline, keypoints = seen(garment)
     rng = np.random.default_rng(1)
     noisy = {name: point + rng.normal(0, 5, 2) for name, point in keypoints.items()}
-    twin = twin_from_outline(outline, "tshirt", noisy, edge_length=0.02)
+    twin = twin_from_outline(outline, "tshirt", noisy, pattern("tshirt"), edge_length=0.02)
     assert set(twin.keypoints.values()) <= set(twin.mesh.boundary.tolist())
 
 
@@ -126,7 +128,7 @@ def test_legs_that_lie_side_by_side_are_cut_apart():
         "leg_outer_right": (290, 380), "leg_inner_right": (200, 380), "crotch": (200, 170),
     }  # fmt: skip
     outline = [corners[name] for name in ("leg_outer_left", "waist_left", "waist_right", "leg_outer_right")]
-    twin = twin_from_outline(outline, "pants", corners, edge_length=0.02)
+    twin = twin_from_outline(outline, "pants", corners, pattern("pants"), edge_length=0.02)
     assert rims(twin.mesh) == 3
     mesh, keypoints = twin.mesh, twin.keypoints
     crotch = mesh.vertices[keypoints["crotch"]]
@@ -153,6 +155,12 @@ def test_unusable_input_is_refused_with_what_to_do(change, words):
         keypoints = {"_".join(swap.get(p, p) for p in name.split("_")): xy for name, xy in keypoints.items()}
     if change.pop("keypoints_nan", False):
         keypoints = {**keypoints, "top_left": (np.nan, 0)}
-    arguments = {"outline": outline, "kind": "rectangle", "keypoints": keypoints, **change}
+    arguments = {
+        "outline": outline,
+        "kind": "rectangle",
+        "keypoints": keypoints,
+        "pattern": pattern("rectangle"),
+        **change,
+    }
     with pytest.raises(GarmentError, match=words):
         twin_from_outline(**arguments)

@@ -7,9 +7,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from polyfold.errors import GarmentError, PlanError
-from polyfold.geometry import polygon_area
+from polyfold.geometry import FoldLine, polygon_area
 from polyfold.polygon import FoldedModel
-from polyfold.types import FoldLine
 
 SQUARE = np.array([(100.0, 300.0), (100.0, 100.0), (300.0, 100.0), (300.0, 300.0)])
 CORNERS = ("bottom_left", "top_left", "top_right", "bottom_right")

@@ -4,14 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from polyfold_standard.templates import (
-    pants_template,
-    rectangle_template,
-    shorts_template,
-    square_template,
-    towel_template,
-    tshirt_template,
-)
+from polyfold_standard.templates.pants import pants_template
+from polyfold_standard.templates.quads import rectangle_template, square_template, towel_template
+from polyfold_standard.templates.shorts import shorts_template
+from polyfold_standard.templates.tshirt import tshirt_template
 
 from polyfold.errors import GarmentError
 from polyfold.polygon import SymmetricGenerator, Template, angle_range, offset_range, position_range, ratio_range

@@ -3,16 +3,16 @@
 from functools import cache
 
 import numpy as np
-from polyfold_standard.pants import Pants
-from polyfold_standard.rectangle import Rectangle
-from polyfold_standard.square import Square
-from polyfold_standard.tshirt import TShirt
+from polyfold_standard.garments.pants import Pants
+from polyfold_standard.garments.rectangle import Rectangle
+from polyfold_standard.garments.square import Square
+from polyfold_standard.garments.tshirt import TShirt
 
 from polyfold.garments import name_by_pose
-from polyfold.geometry import rotate
-from polyfold.ideal import LAYER_THICKNESS
+from polyfold.geometry import Camera, rotate
 from polyfold.tasks import load_suite
-from polyfold.types import Camera, SimState
+from polyfold.tasks._ideal import LAYER_THICKNESS
+from polyfold.types import SimState
 
 KINDS = {"square": Square(), "rectangle": Rectangle(), "tshirt": TShirt(), "pants": Pants()}
 SUITE = load_suite("polyfold_standard:tasks/polyfold70.toml")

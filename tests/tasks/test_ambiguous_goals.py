@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from laid_flat import SUITE
 
-from polyfold.goals import OpenTask, measure
-from polyfold.judging import accepted_tasks, known_tasks, suite
+from polyfold.evaluation import accepted_tasks, known_tasks, suite
+from polyfold.tasks import OpenTask, measure
 
 GOALS = suite("ambiguous").goals
 goals = pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.id)

@@ -12,13 +12,11 @@ from laid_flat import SUITE
 
 import polyfold
 from polyfold.errors import ConfigError
-from polyfold.evaluation import evaluate_cell
+from polyfold.evaluation import Reference, reference_for, suite
 from polyfold.geometry import fill_polygon, rotate
-from polyfold.goals import Bounds, measure
-from polyfold.judging import suite
-from polyfold.references import Reference, reference_for
-from polyfold.report import report_html
-from polyfold.tasks import load_suite
+from polyfold.studies import cells, evaluate_cell
+from polyfold.tasks import Bounds, load_suite, measure
+from polyfold.viz.report import report_html
 
 SIZE = 400
 angles = st.floats(0.0, 2 * np.pi)
@@ -300,9 +298,9 @@ class TestStudy:
 
     def test_patterns_choose_goals_and_a_split_leaves_them_out(self, registered):
         settings = {"name": "open", "suite": registered(GOALS + TASK), "first_seed": 2000}
-        chosen = [cell.task for cell in polyfold.study.cells(polyfold.Study(**settings, tasks=("t*", "diagonal")))]
+        chosen = [cell.task for cell in cells(polyfold.Study(**settings, tasks=("t*", "diagonal")))]
         assert chosen == ["diagonal", "triangle", "tiny"]
-        assert [cell.task for cell in polyfold.study.cells(polyfold.Study(**settings, steps="single"))] == ["diagonal"]
+        assert [cell.task for cell in cells(polyfold.Study(**settings, steps="single"))] == ["diagonal"]
 
     @pytest.mark.parametrize("mixed", [True, False])
     def test_thresholds_hold_against_one_reference_together(self, registered, monkeypatch, mixed):
@@ -314,7 +312,7 @@ class TestStudy:
                 return Reference(replace(real, end=astray), ())
             return Reference(replace(real, mask=np.zeros_like(real.mask)) if mixed else real, ())
 
-        monkeypatch.setattr("polyfold.evaluation.reference_for", two)
+        monkeypatch.setattr("polyfold.studies._cell.reference_for", two)
         study = polyfold.Study(
             name="open",
             suite=registered(GOALS),
@@ -323,5 +321,5 @@ class TestStudy:
             edge_length=0.03,
             base={"agent": "oracle"},
         )
-        record = evaluate_cell(study, next(polyfold.study.cells(study)))
+        record = evaluate_cell(study, next(cells(study)))
         assert record["success"] == {"polyfold": not mixed, "strict": not mixed}

@@ -4,10 +4,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from laid_flat import KINDS, SUITE, lay
 
-from polyfold.geometry import fill_polygon, iou
-from polyfold.ideal import LAYER_THICKNESS, fidelity, fold_ideally
-from polyfold.tasks import fold_lines
-from polyfold.types import FoldLine, SimState
+from polyfold.geometry import FoldLine, fill_polygon, iou
+from polyfold.tasks import fidelity, fold_ideally, fold_lines
+from polyfold.tasks._ideal import LAYER_THICKNESS
+from polyfold.types import SimState
 
 pixel = st.floats(60, 340)
 fold_line = st.tuples(pixel, pixel, pixel, pixel).filter(lambda p: np.hypot(p[2] - p[0], p[3] - p[1]) > 20)

@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 from laid_flat import SUITE, lay
 
 from polyfold.errors import ConfigError
-from polyfold.geometry import rotate
+from polyfold.geometry import FoldLine, rotate
 from polyfold.tasks import fold_lines, load_suite, mirror_line, recognise
-from polyfold.types import FoldLine
 
 coordinate = st.floats(0, 400)
 point = st.tuples(coordinate, coordinate)

@@ -6,7 +6,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import PlanError
-from polyfold.types import Action, FoldLine, Scene
+from polyfold.geometry import FoldLine
+from polyfold.types import Action, Scene
 
 __all__ = ["Middle"]
 

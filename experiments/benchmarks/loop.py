@@ -1,0 +1,129 @@
+"""The whole loop on unseen garments: ``python -m polyfold.benchmark.loop``.
+
+Four standard jobs on the evaluation garments (seeds 0 and up), from a sentence to the final picture, judged against
+the ideal along lines from ground-truth keypoints; the agents ``noop`` and ``random`` beside the method. The run
+directory can be killed and resumed; running again does only what is missing and prints the table.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from polyfold.config import Experiment
+from polyfold.logs import RunDirectory
+
+
+@dataclass(frozen=True)
+class Job:
+    """A sentence, the standard task it means, and the IoU that counts as well folded."""
+
+    name: str
+    garment: str
+    task: str
+    instruction: str
+    good: float = 0.90
+
+
+JOBS = (
+    Job("t-shirt, block", "tshirt", "tshirt-block-left-first", "fold the t-shirt into a rectangular block"),
+    Job("pants, half", "pants", "pants-half-left", "fold the left leg of the pants over onto the right leg"),
+    Job(
+        "square, diagonal",
+        "square",
+        "square-triangle-bottom_left",
+        "fold the bottom left corner onto the top right corner",
+    ),
+    Job(
+        "square, both diagonals",
+        "square",
+        "square-triangle-bottom_left-then-top_left",
+        "fold the bottom left corner onto the top right corner, then the top left corner onto the bottom right corner",
+        good=0.85,
+    ),
+    Job(
+        "rectangle, quarters",
+        "rectangle",
+        "rectangle-half-left-then-bottom",
+        "fold the left edge onto the right edge, then fold the bottom edge up to the top edge",
+    ),
+)
+AGENTS = ("polyfold", "noop", "random")
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run what is missing and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--n", type=int, default=20, help="garments per job (default: 20)")
+    parser.add_argument("--first-seed", type=int, default=0, help="0 for the evaluation garments; develop from 2000")
+    parser.add_argument("--agent", action="append", choices=AGENTS, help="only this agent; may be repeated")
+    parser.add_argument("--job", action="append", choices=[job.task for job in JOBS], help="only this job")
+    parser.add_argument("--policy", default="caso", help="policy of the polyfold agent (default: caso)")
+    parser.add_argument("--out", type=Path, default=Path("runs/benchmark-loop"), help="run directory, resumed")
+    chosen = parser.parse_args(arguments)
+    jobs = [job for job in JOBS if chosen.job is None or job.task in chosen.job]
+    agents = chosen.agent or list(AGENTS)
+    run = RunDirectory(chosen.out, {"benchmark": "loop", "policy": chosen.policy})
+    _complete(run, jobs, agents, range(chosen.first_seed, chosen.first_seed + chosen.n), chosen.policy)
+    wanted = {_key(job, agent, chosen.first_seed + i) for job in jobs for agent in agents for i in range(chosen.n)}
+    print(table([record for key, record in run.episodes().items() if key in wanted]))
+
+
+def _key(job: Job, agent: str, seed: int) -> str:
+    return f"{job.task}/{agent}/{seed}"
+
+
+def _complete(run: RunDirectory, jobs: list[Job], agents: list[str], seeds: range, policy: str) -> None:
+    """Run the episodes that the directory does not hold yet."""
+    from tqdm import tqdm
+
+    done = run.episodes()
+    missing = [
+        (job, agent, seed) for seed in seeds for job in jobs for agent in agents if _key(job, agent, seed) not in done
+    ]
+    for job, agent, seed in tqdm(missing, desc="episodes", unit="episode", disable=not missing):
+        run.append(_key(job, agent, seed), _episode(job, agent, seed, policy))
+
+
+def _episode(job: Job, agent: str, seed: int, policy: str) -> dict[str, Any]:
+    from polyfold.api import attempt, garment
+
+    experiment = Experiment.of(agent=agent, policy=policy)
+    episode = attempt(job.instruction, garment(job.garment, seed=seed), seed, experiment, task=job.task)
+    return {"job": job.name, "good": job.good, "agent": agent, **episode.summary()}
+
+
+def table(records: list[dict[str, Any]]) -> str:
+    """The results as a markdown table, a row per job and agent."""
+    lines = [
+        "| job | agent | n | IoU, mean | lowest | good | moved-part error, mean [mm] | failures | seconds an episode |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for job, agent, rows in _groups(records):
+        iou = np.array([row["fidelity"]["iou"] for row in rows])
+        error = np.array([row["fidelity"]["moved_part_error_mm"] for row in rows], float)
+        good = rows[0]["good"]
+        failures = sum(row["failure"] is not None for row in rows)
+        seconds = np.mean([sum(row["seconds"].values()) for row in rows])
+        lines.append(
+            f"| {job} | {agent} | {len(rows)} | {iou.mean():.3f} | {iou.min():.3f} | {(iou >= good).sum()} of "
+            f"{len(rows)} at {good:.2f} | {np.nanmean(error):.1f} | {failures} | {seconds:.1f} |"
+        )
+    return "\n".join(lines)
+
+
+def _groups(records: list[dict[str, Any]]) -> Iterator[tuple[str, str, list[dict[str, Any]]]]:
+    order = {(job.name, agent): None for job in JOBS for agent in AGENTS}
+    for job, agent in order:
+        rows = [record for record in records if (record["job"], record["agent"]) == (job, agent)]
+        if rows:
+            yield job, agent, rows
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Measurements of learned policies on garments that they never saw."""

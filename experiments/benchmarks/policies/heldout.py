@@ -1,0 +1,145 @@
+"""How well policies pick on garments that nothing was trained on: ``python -m polyfold_fgpnp.heldout DATA POLICY...``.
+
+``DATA`` is a data set of ``polyfold collect --seeds 1150-1199 --mix uniform=16``. Each policy folds every state; a
+policy is written NAME or NAME=WEIGHTS. Prints two Markdown tables, which :mod:`polyfold_fgpnp.heldout_tables` explains:
+how well learned maps order the picks tried in a state, beside what learns nothing; and the error and regret of the pick
+that each policy chose, beside those of a random first pick. Where a policy refuses a state, that counts as leaving the
+cloth as it is.
+
+What was executed is kept in ``DATA/policies``, so that another policy can be added later; other weights are another
+file. After a change to the code of a policy or of the simulator, remove the files of what it concerns.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from polyfold_fgpnp.data.dataset import Dataset, load_dataset
+from polyfold_fgpnp.data.interaction import LINES_PER_STAGE, Interaction, execute, situations
+from polyfold_fgpnp.data.workers import in_processes
+from polyfold_fgpnp.policies.learned import CoupledActionMap, LearnedPolicy
+from polyfold_fgpnp.policies.weights import file_hash, weights_file
+
+from experiments.benchmarks.policies.heldout_tables import RECIPE, correlation_table, regret_table
+from polyfold import plugins
+from polyfold.errors import ConfigError, PlanError, PolyfoldError
+from polyfold.plugins.interfaces import Policy
+
+SAME_STATE = 0.01
+"""States whose flap's way differs by more than this share are not the same."""
+
+
+@dataclass(frozen=True)
+class Contestant:
+    """A policy with its weights, if they are not those of the package."""
+
+    text: str
+
+    def create(self) -> Policy:
+        """The policy. Raises PluginError or ConfigError."""
+        name, _, weights = self.text.partition("=")
+        return plugins.create("policies", name, {"weights": weights} if weights else {})
+
+    @property
+    def file(self) -> str:
+        """Name of the file that keeps its results: other weights, be they the package's, another file."""
+        name, _, weights = self.text.partition("=")
+        cls = plugins.component_class("policies", name)
+        if not weights and not issubclass(cls, LearnedPolicy):
+            return name
+        return f"{name}-{file_hash(weights_file(weights or cls.Config().weights))[:12]}"
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run what is missing and print the tables."""
+    parser = argparse.ArgumentParser(prog="python -m polyfold_fgpnp.heldout", description=__doc__)
+    parser.add_argument("data", type=Path, help="held-out data set")
+    parser.add_argument("policies", nargs="+", metavar="POLICY[=WEIGHTS]", help="such as caso, csam+caso=out/weights…")
+    parser.add_argument("--workers", type=int, default=1, help="processes (default 1)")
+    options = parser.parse_args(arguments)
+    try:
+        _compare(load_dataset(options.data), options)
+    except PolyfoldError as error:
+        sys.exit(f"{parser.prog}: {error}")
+
+
+def _compare(data: Dataset, options: argparse.Namespace) -> None:
+    if not len(data.of_recipes(RECIPE)):
+        raise ConfigError(f"{options.data} has no random first picks; collect some with --mix {RECIPE}=16")
+    contestants = [Contestant(text) for text in options.policies]
+    errors = {one.text: _executed(options.data, data, one, options.workers) for one in contestants}
+    policies = {one.text: one.create() for one in contestants}
+    maps = {name: policy for name, policy in policies.items() if isinstance(policy, CoupledActionMap)}
+    print(correlation_table(data, maps).markdown())
+    print()
+    print(regret_table(data, errors).markdown())
+
+
+def _executed(path: Path, data: Dataset, contestant: Contestant, workers: int) -> NDArray[np.float64]:
+    """Error [mm] after the policy's action in every state, shape (S,); what is missing is executed."""
+    from tqdm import tqdm
+
+    contestant.create()
+    kept = path / "policies" / f"{contestant.file}.jsonl"
+    kept.parent.mkdir(exist_ok=True)
+    found = dict(_kept(kept))
+    interaction = Interaction(**data.description["parameters"])
+    each = sum(LINES_PER_STAGE)
+    missing = [job for job in range(data.states // each) if job not in found]
+    work = partial(_fold_job, interaction, contestant)
+    with kept.open("a", encoding="utf-8") as stream:
+        for job, (errors, ways) in tqdm(in_processes(work, missing, workers), total=len(missing), desc=contestant.text):
+            _refuse_other_states(data["travel_mm"][each * job : each * (job + 1)], ways)
+            stream.write(json.dumps({"job": job, "error_mm": errors}) + "\n")
+            stream.flush()
+            found[job] = errors
+    return np.concatenate([found[job] for job in sorted(found)]).astype(float)
+
+
+def _refuse_other_states(there: NDArray[np.float32], ways: Sequence[float]) -> None:
+    if not np.allclose(there, ways, rtol=SAME_STATE, equal_nan=True):
+        raise ConfigError(
+            "the states of this data set can't be made again: the simulator, its rounding on this machine or how lines "
+            "are drawn has changed since, so picks would be compared in different states; collect the data set anew"
+        )
+
+
+def _kept(path: Path) -> Iterator[tuple[int, list[float | None]]]:
+    if not path.exists():
+        return
+    for line in path.read_text("utf-8").splitlines():
+        try:
+            record = json.loads(line)
+        except json.JSONDecodeError:
+            continue  # cut off when a run was killed
+        yield record["job"], record["error_mm"]
+
+
+def _fold_job(interaction: Interaction, contestant: Contestant, job: int) -> tuple[list[float | None], list[float]]:
+    """The policy's error in each state of a job, and the flap's way there, which tells states apart [mm].
+
+    Where the policy refuses, the error is that of doing nothing; None where the cloth diverged.
+    """
+    policy, errors, ways = contestant.create(), [], []
+    for simulator, segmenter, situation in situations(interaction, job):
+        ways.append(situation.expectation.travel_mm)
+        try:
+            action = policy.act(situation.line.line, situation.scene, situation.rng)
+        except PlanError:
+            errors.append(situation.expectation.travel_mm)
+            continue
+        outcome, _ = execute(simulator, segmenter, situation, action)
+        errors.append(None if outcome is None else outcome.error_mm)
+    return errors, ways
+
+
+if __name__ == "__main__":
+    main()

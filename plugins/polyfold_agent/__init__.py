@@ -1,0 +1,1 @@
+"""The ``polyfold`` agent: segmenter, grounding, planner and policy in a row, with recovery."""

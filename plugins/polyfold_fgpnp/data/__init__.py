@@ -1,0 +1,1 @@
+"""Random folds in simulation: what policies learn from."""

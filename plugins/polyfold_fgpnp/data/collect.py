@@ -1,0 +1,129 @@
+"""``polyfold collect``: fold in simulation, at random or as a network would, and record how it came out."""
+
+from __future__ import annotations
+
+import argparse
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from polyfold.errors import ConfigError
+
+if TYPE_CHECKING:
+    from polyfold_fgpnp.data.dataset import Description
+    from polyfold_fgpnp.data.interaction import Interaction
+
+
+class Collect:
+    """The verb."""
+
+    @staticmethod
+    def configure(parser: argparse.ArgumentParser) -> None:
+        """Add the options."""
+        parser.add_argument("--out", type=Path, metavar="DIR", help="data set; resumed if it exists")
+        parser.add_argument(
+            "--describe", type=Path, metavar="DIR", help="show what a data set holds instead of collecting"
+        )
+        parser.add_argument(
+            "--folds", type=int, default=10_000, metavar="N", help="at least this many (default: 10000)"
+        )
+        parser.add_argument("--kind", default="tshirt", help="kind of garment (default: tshirt)")
+        parser.add_argument("--seeds", default="1000-1099", metavar="A-B", help="garment seeds (default: 1000-1099)")
+        parser.add_argument(
+            "--workers", type=int, default=1, metavar="N", help="processes on this machine (default: 1)"
+        )
+        parser.add_argument(
+            "--edge-length", type=float, default=0.018, metavar="M", help="of the mesh (default: 0.018)"
+        )
+        parser.add_argument("--mix", metavar="RECIPE=COUNT,...", help="picks tried from every state, by recipe")
+        parser.add_argument("--weights", type=Path, metavar="FILE", help="or name: the network that chosen asks")
+        parser.add_argument("--seed", type=int, default=0, help="of everything random (default: 0)")
+
+    @staticmethod
+    def run(arguments: argparse.Namespace) -> int:
+        """Collect, or describe."""
+        from polyfold_fgpnp.data.describe import describe
+
+        if (arguments.out is None) == (arguments.describe is None):
+            raise ConfigError("say either where to collect (--out DIR) or what to show (--describe DIR)")
+        if arguments.describe is not None:
+            print(describe(arguments.describe))
+            return 0
+        try:
+            found = collect(_interaction(arguments), arguments.folds, arguments.out, arguments.workers)
+        except KeyboardInterrupt:
+            print(f"interrupted; what is finished is in {arguments.out}, run the same command to go on")
+            raise
+        counts = found["counts"]
+        print(
+            f"{counts['folds']} folds from {counts['states']} states in {arguments.out}, {counts['diverged']} diverged"
+        )
+        return 0
+
+
+def collect(
+    interaction: Interaction, folds: int, out: str | Path, workers: int = 1, progress: bool = True
+) -> Description:
+    """Run what a data set's folder lacks and finish it.
+
+    Args:
+        interaction: what to try.
+        folds: at least this many folds in all; whole jobs are run.
+        out: the folder; resumed if it holds a data set with the same parameters.
+        workers: processes on this machine.
+        progress: show a progress bar.
+
+    Raises:
+        ConfigError: if the folder holds a data set with other parameters or changed shards, there is no such kind of
+            garment, the weights do not serve, or not even one fold or process is asked for.
+    """
+    from tqdm import tqdm
+
+    from polyfold import plugins
+    from polyfold_fgpnp.data.dataset import DatasetFolder
+    from polyfold_fgpnp.data.interaction import explore, trials_per_job, value_policy
+    from polyfold_fgpnp.data.workers import in_processes
+
+    if folds < 1 or workers < 1:
+        raise ConfigError(f"{folds} folds by {workers} processes can't be collected; give 1 or more of each")
+    # What does not serve is refused before there is a folder that names it.
+    plugins.component_class("garments", interaction.kind)
+    value_policy(interaction)
+    folder = DatasetFolder(out, interaction.model_dump(mode="json"))
+    each = trials_per_job(interaction.mix)
+    total = -(-folds // each)
+    done = folder.jobs()
+    missing = [job for job in range(total) if job not in done]
+    with tqdm(total=total * each, initial=(total - len(missing)) * each, unit="fold", disable=not progress) as bar:
+        for job, arrays in in_processes(partial(explore, interaction), missing, workers):
+            folder.write(job, arrays)
+            bar.update(each)
+    return folder.finish()
+
+
+def _interaction(arguments: argparse.Namespace) -> Interaction:
+    from pydantic import ValidationError
+
+    from polyfold_fgpnp.data.interaction import Interaction
+    from polyfold_fgpnp.data.trials import MIX, parse_mix
+
+    try:
+        return Interaction(
+            kind=arguments.kind,
+            seeds=_seeds(arguments.seeds),
+            edge_length=arguments.edge_length,
+            mix=parse_mix(arguments.mix) if arguments.mix else dict(MIX),
+            seed=arguments.seed,
+            weights=arguments.weights,
+        )
+    except ValidationError as error:
+        first = error.errors()[0]
+        option = str(first["loc"][0]).replace("_", "-")
+        raise ConfigError(f"--{option} has a bad value: {first['msg']}; change it") from error
+
+
+def _seeds(text: str) -> tuple[int, int]:
+    first, _, last = text.partition("-")
+    if not (first.isdigit() and last.isdigit() and int(first) <= int(last)):
+        raise ConfigError(f"--seeds {text!r} does not read A-B; for example 1000-1099")
+    return int(first), int(last)

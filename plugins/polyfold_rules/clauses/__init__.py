@@ -1,0 +1,1 @@
+"""Clauses: each says one fold, or what the whole should become."""

@@ -1,0 +1,1 @@
+"""Parts, outlines and creases: where on the garment the words point."""

@@ -1,0 +1,1 @@
+"""Words of fold language: tokens, spelling, phrases and what is left out."""

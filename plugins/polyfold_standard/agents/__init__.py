@@ -1,0 +1,1 @@
+"""The oracle, and the baselines that any method must beat."""

@@ -1,0 +1,1 @@
+"""Generators of the standard kinds of garment."""

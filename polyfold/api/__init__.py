@@ -1,0 +1,16 @@
+"""From a sentence to a folded garment in one call, and where garments come from."""
+
+from polyfold.api._fold import attempt, fold, save
+from polyfold.api._loaders import Grounded, garment, ground
+from polyfold.api._studies import open, run
+
+__all__ = [
+    "Grounded",
+    "attempt",
+    "fold",
+    "garment",
+    "ground",
+    "open",
+    "run",
+    "save",
+]

@@ -1,0 +1,118 @@
+"""``polyfold.fold``: from a sentence to a folded garment, its figures and its pictures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from polyfold import plugins
+from polyfold.config import Experiment
+from polyfold.errors import ConfigError
+from polyfold.evaluation import find_task, judge
+from polyfold.garments import Garment
+from polyfold.logs import write_atomically
+from polyfold.rollout import run_episode
+from polyfold.types import Episode, Observation
+
+GIF_RATE = 12.0
+"""Frames of the animation per simulated second."""
+
+
+def fold(
+    instruction: str,
+    garment: str | Garment = "tshirt",
+    seed: int = 0,
+    *,
+    task: str | None = None,
+    out: str | Path | None = None,
+    experiment: Experiment | None = None,
+    observer: Any = None,
+    **components: Any,
+) -> Episode:
+    """Fold a garment from a sentence, in simulation.
+
+    Args:
+        instruction: what to do, for example ``"fold the t-shirt into a rectangular block"``.
+        garment: a kind (``tshirt``, ``pants``, ``square``, ``rectangle``, ...), of which ``seed`` picks the instance,
+            or a garment made by :func:`polyfold.garment`.
+        seed: picks the garment and how it lies, and the agent's random choices.
+        task: id of the standard task to judge against; by default the plan is recognised as one where it is.
+        out: directory for ``episode.json``, ``transcript.jsonl``, ``filmstrip.png`` and ``fold.gif``.
+        experiment: the components; by default those that need no key and no GPU.
+        observer: an object whose ``on_episode_start``, ``on_step`` and ``on_episode_end`` are called as it happens.
+        components: single components instead: ``policy="farthest"``, ``llm={"name": "rules"}``.
+
+    Returns:
+        The episode; it shows itself in Jupyter.
+
+    Raises:
+        RefusedError: if the instruction can't be understood or done; nothing is folded.
+        PolyfoldError: if grounding, planning or simulation fail; ``out`` then holds what was done until then.
+    """
+    from polyfold.api._loaders import garment as named_garment
+
+    experiment = (experiment or Experiment()).override(components)
+    garment = named_garment(garment, seed=seed, experiment=experiment) if isinstance(garment, str) else garment
+    frames: list[Observation] | None = None if out is None else []
+    folder = None if out is None else _prepare(Path(out))
+    if observer is not None:
+        plugins.observe(observer)
+    try:
+        episode = attempt(instruction, garment, seed, experiment, task=task, frames=frames)
+    finally:
+        if observer is not None:
+            plugins.unobserve(observer)
+    if folder is not None:
+        save(episode, folder, frames or [])
+    if episode.error is not None:
+        raise episode.error
+    return episode
+
+
+def attempt(
+    instruction: str,
+    garment: Garment,
+    seed: int,
+    experiment: Experiment,
+    *,
+    task: str | None = None,
+    frames: list[Observation] | None = None,
+) -> Episode:
+    """Run and judge one episode; a failed one is returned with its ``failure`` instead of raised.
+
+    Args:
+        frames: if given, pictures of the motion are appended (for simulators that can ``record``).
+    """
+    goal = None if task is None else find_task(task, garment.kind)
+    simulator = plugins.create_chosen(experiment, "simulator")
+    try:
+        if frames is not None and hasattr(simulator, "record"):
+            simulator.record(frames.append, GIF_RATE)
+        episode = judge(run_episode(experiment, garment, instruction, seed, simulator, task=goal), task)
+    finally:
+        simulator.close()
+    plugins.notify("on_episode_end", episode=episode)
+    return episode
+
+
+def save(episode: Episode, folder: Path, frames: list[Observation]) -> None:
+    """Write ``episode.json``, ``transcript.jsonl``, ``filmstrip.png`` and, if there was motion, ``fold.gif``."""
+    from polyfold import viz
+    from polyfold.viz import filmstrip_of
+
+    summary = {**episode.summary(), "out": str(folder)}
+    write_atomically(folder / "episode.json", json.dumps(summary, indent=2) + "\n")
+    episode.transcript.write(folder / "transcript.jsonl")
+    viz.save(filmstrip_of(episode), folder / "filmstrip.png")
+    if frames:
+        motion = [episode.start.rgb, *(frame.rgb for frame in frames), episode.final.rgb]
+        viz.gif(motion, folder / "fold.gif", fps=GIF_RATE)
+
+
+def _prepare(folder: Path) -> Path:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ConfigError(f"can't write to {folder} ({error.strerror}); choose another --out") from error
+    return folder

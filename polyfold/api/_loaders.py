@@ -1,0 +1,195 @@
+"""Where a garment comes from: a seed, a mesh file, or a real garment's mask, outline or photo (its simulated twin)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from polyfold import plugins
+from polyfold.config import Experiment
+from polyfold.errors import GarmentError
+from polyfold.garments import Garment, Pattern
+from polyfold.geometry import Camera
+from polyfold.geometry import _plane as geometry
+from polyfold.types import Observation, Scene
+
+SPAN = 300.0
+"""Longest side of a real garment's bounding box in the image it is grounded in [px]."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Grounded:
+    """A real garment with the polygon fitted to it.
+
+    Attributes:
+        scene: the scene, in a 400 x 400 image where the garment's longest side measures 300 px.
+        rgb: that image, uint8, shape (400, 400, 3).
+        outline: the silhouette in the source's pixels, shape (N, 2).
+        keypoints: vertex name -> position in the source's pixels, shape (2,).
+    """
+
+    scene: Scene
+    rgb: NDArray[np.uint8]
+    outline: Floats
+    keypoints: Mapping[str, Floats]
+
+    def _repr_png_(self) -> bytes:
+        from polyfold import viz
+
+        assert self.scene.model is not None
+        return viz.png(viz.grounding_picture(self.rgb, self.scene.model))
+
+
+def garment(
+    kind: str,
+    seed: int = 0,
+    *,
+    mask: str | Path | ArrayLike | None = None,
+    outline: str | Path | ArrayLike | None = None,
+    image: str | Path | None = None,
+    mesh: str | Path | None = None,
+    keypoints: str | Path | None = None,
+    size: float | None = None,
+    edge_length: float | None = None,
+    experiment: Experiment | None = None,
+) -> Garment:
+    """A garment of a kind: seeded, from a mesh file, or the twin of a real one.
+
+    Args:
+        kind: garment kind, for example ``tshirt``.
+        seed: picks the instance when nothing else is given.
+        mask: PNG or bool array, shape (H, W), of a real garment.
+        outline: JSON file or array of pixels, shape (N, 2), of a real garment.
+        image: photo of a real garment on a plain background.
+        mesh: OBJ file; ``keypoints`` must be given too.
+        keypoints: JSON file, keypoint name -> vertex index of the mesh.
+        size: longest side of the real garment's bounding box [m]; by default typical of the kind.
+        edge_length: mesh size [m]; by default what suits the kind.
+        experiment: whose grounding finds the keypoints of a real garment.
+
+    Raises:
+        GarmentError: if a file can't be used, or more than one source is given.
+        GroundingError: if the outline can't be explained as this kind.
+        PluginError: if no plugin provides the kind.
+    """
+    generator = plugins.create("garments", kind)
+    sources = {"mask": mask, "outline": outline, "image": image, "mesh": mesh}
+    given = [name for name, source in sources.items() if source is not None]
+    if len(given) > 1:
+        raise GarmentError(f"give one source of the garment, not {' and '.join(given)}")
+    if keypoints is not None and mesh is None:
+        raise GarmentError("keypoints belong to a mesh file; give the mesh too")
+    if not given:
+        if size is not None:
+            raise GarmentError("the size of a seeded garment comes from its seed; give a mask, outline, image or mesh")
+        return generator.generate(seed) if edge_length is None else generator.generate(seed, edge_length)
+    if mesh is not None:
+        return _from_mesh(kind, mesh, keypoints, size, edge_length)
+    from polyfold.garments import twin_from_outline
+
+    found = ground(kind, mask=mask, outline=outline, image=image, experiment=experiment)
+    return twin_from_outline(found.outline, kind, found.keypoints, pattern_of(kind), size, edge_length)
+
+
+def pattern_of(kind: str) -> Pattern:
+    """How a kind of garment is sewn. Raises GarmentError if its class does not say."""
+    pattern = getattr(plugins.component_class("garments", kind), "pattern", None)
+    if pattern is None:
+        raise GarmentError(f"the garment kind {kind!r} does not say how it is sewn; give its class a `pattern`")
+    return pattern
+
+
+def _from_mesh(
+    kind: str, mesh: str | Path, keypoints: str | Path | None, size: float | None, edge_length: float | None
+) -> Garment:
+    from polyfold.garments import load_obj
+
+    if keypoints is None:
+        raise GarmentError("a mesh needs named keypoints; give a JSON file of keypoint name -> vertex index")
+    return load_obj(mesh, keypoints, kind, pattern_of(kind), size, edge_length)
+
+
+def ground(
+    kind: str,
+    *,
+    mask: str | Path | ArrayLike | None = None,
+    outline: str | Path | ArrayLike | None = None,
+    image: str | Path | None = None,
+    experiment: Experiment | None = None,
+) -> Grounded:
+    """Fit a kind's polygon model to a real garment.
+
+    Args: as in :func:`garment`; give exactly one of ``mask``, ``outline`` and ``image``.
+
+    Raises:
+        GarmentError: if the source can't be used.
+        GroundingError: if it can't be explained as this kind.
+    """
+    silhouette, photo = outline_of(mask=mask, outline=outline, image=image)
+    centre = (silhouette.min(axis=0) + silhouette.max(axis=0)) / 2
+    scale = SPAN / float(np.ptp(silhouette, axis=0).max())
+    camera = Camera()
+    shift = np.asarray(camera.centre) - scale * centre
+    framed = scale * silhouette + shift
+    framed_mask = geometry.fill_polygon(framed, camera.height, camera.width)
+    rgb = _framed_photo(photo, scale, shift, camera) if photo is not None else _drawn(framed_mask)
+    depth = np.full(framed_mask.shape, camera.elevation, np.float32)
+    grounding = plugins.create_chosen(experiment or Experiment(), "grounding")
+    template = plugins.create("garments", kind).template()
+    scene: Scene = grounding.ground(Observation(rgb, depth, camera), framed_mask, template)
+    if scene.model is None:
+        raise GarmentError("a real garment needs a grounding with a polygon model; use the grounding 'polygon'")
+    vertices = scene.model.vertices()
+    keypoints = {name: (vertices[name].point - shift) / scale for name in template.names}
+    return Grounded(scene, rgb, silhouette, keypoints)
+
+
+def outline_of(
+    *,
+    mask: str | Path | ArrayLike | None = None,
+    outline: str | Path | ArrayLike | None = None,
+    image: str | Path | None = None,
+) -> tuple[Floats, NDArray[np.uint8] | None]:
+    """The silhouette [px], shape (N, 2), of a mask, outline or photo, and the photo itself if that was given."""
+    from polyfold.garments import load_mask, load_outline, load_picture, outline_from_photo
+
+    if image is not None:
+        return outline_from_photo(image), load_picture(image)
+    if outline is not None:
+        points: Any = load_outline(outline) if isinstance(outline, str | Path) else outline
+        return np.asarray(points, float), None
+    if mask is None:
+        raise GarmentError("give a mask, an outline or an image of the garment")
+    pixels: Any = load_mask(mask) if isinstance(mask, str | Path) else mask
+    return geometry.contour_of(np.asarray(pixels, bool)), None
+
+
+def is_mask(path: str | Path) -> bool:
+    """Whether a picture file is a black-and-white mask rather than a photo."""
+    from polyfold.garments import load_picture
+
+    pixels = load_picture(path)
+    return bool(((pixels < 16) | (pixels > 239)).mean() > 0.99 and np.ptp(pixels.astype(int), axis=2).max() < 16)
+
+
+def _framed_photo(photo: NDArray[np.uint8], scale: float, shift: Floats, camera: Camera) -> NDArray[np.uint8]:
+    import cv2
+
+    matrix = np.array([[scale, 0.0, shift[0]], [0.0, scale, shift[1]]])
+    flags = cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR
+    size = (camera.width, camera.height)
+    return cv2.warpAffine(photo, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
+
+
+def _drawn(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """A plain picture of a mask, for sources that have no photo."""
+    rgb = np.full((*mask.shape, 3), 236, np.uint8)
+    rgb[mask] = (120, 150, 180)
+    return rgb

@@ -1,0 +1,27 @@
+"""Running studies and opening what they left."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from polyfold.analysis import Results, open_results
+from polyfold.studies import Study, evaluate
+from polyfold.viz import thumbnail
+
+
+def run(
+    study: Study,
+    out: str | Path,
+    workers: int = 1,
+    engine: str = "local",
+    address: str | None = None,
+    progress: bool = True,
+    pictures: str = "failed",
+) -> Results:
+    """Run a study, or what its directory lacks of it; see :func:`polyfold.studies.evaluate`."""
+    return Results(study, evaluate(study, out, workers, engine, address, progress, pictures, thumbnail))
+
+
+def open(out: str | Path) -> Results:
+    """The results in a run directory, finished or not. Raises ConfigError if there is none."""
+    return open_results(out)

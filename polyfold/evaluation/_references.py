@@ -1,0 +1,143 @@
+"""What the oracle makes of a task on a garment: the reference that metrics compare with, cached by content."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from polyfold import plugins
+from polyfold.config import ComponentSpec, Experiment
+from polyfold.evaluation._judging import final_mask
+from polyfold.garments import Garment
+from polyfold.geometry import Camera
+from polyfold.logs import versions
+from polyfold.rollout import run_episode
+from polyfold.tasks import Task, fold_ideally, fold_lines
+from polyfold.types import Outcome, SimState
+
+
+class Reference:
+    """The oracle's run: where every particle lay after each fold, and the final silhouette.
+
+    Attributes:
+        outcome: start and end for metrics.
+        after: state after each step.
+    """
+
+    def __init__(self, outcome: Outcome, after: tuple[SimState, ...]) -> None:
+        self.outcome = outcome
+        self.after = after
+
+
+def cache_folder() -> Path:
+    """Where references are kept: ``$POLYFOLD_CACHE``, else ``~/.cache/polyfold``."""
+    return Path(os.environ.get("POLYFOLD_CACHE") or Path.home() / ".cache" / "polyfold")
+
+
+@lru_cache(maxsize=64)
+def _simulator_digest(module: str) -> str:
+    """A hash of the simulator's source, so that a change of physics never meets an old reference."""
+    from importlib.util import find_spec
+
+    spec = find_spec(module.partition(".")[0])
+    assert spec is not None
+    assert spec.submodule_search_locations is not None
+    digest = hashlib.sha256()
+    for folder in spec.submodule_search_locations:
+        for path in sorted(Path(folder).rglob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def reference_for(task: Task, garment: Garment, seed: int, simulator: ComponentSpec) -> Reference:
+    """The oracle's result from the same start, computed once and then read from the cache.
+
+    Args:
+        task: the task.
+        garment: the garment.
+        seed: of the pose.
+        simulator: the simulator and its parameters; one that injects faults or noise says in ``faultless(config)``
+            which simulator to use instead, as a name and parameters.
+    """
+    simulator = _faultless(simulator)
+    path = cache_folder() / "references" / f"{_key(task, garment, seed, simulator)}.npz"
+    if path.exists():
+        return _read(path)
+    experiment = Experiment.of(agent="oracle", simulator=simulator)
+    episode = run_episode(experiment, garment, "", seed, task=task)
+    if episode.error is not None:
+        raise episode.error
+    mask = final_mask(episode)
+    after = tuple(step.after for step in episode.steps)
+    found = Reference(Outcome(episode.initial_state, episode.final_state, mask), after)
+    _write(path, found)
+    return found
+
+
+def ideal_reference(task: Task, garment: Garment, flat: SimState) -> Reference:
+    """The flat garment folded geometrically along the task's lines: no simulator and no policy has a part in it.
+
+    Args:
+        task: the task.
+        garment: the garment.
+        flat: the state before the first fold.
+    """
+    lines = fold_lines(task, flat.keypoint_pixels())
+    folded = [fold_ideally(flat, garment.mesh, lines[: count + 1]) for count in range(len(lines))]
+    after = tuple(replace(flat, positions=ideal.positions) for ideal in folded)
+    return Reference(Outcome(flat, after[-1], folded[-1].mask), after)
+
+
+def _faultless(simulator: ComponentSpec) -> ComponentSpec:
+    cls = plugins.component_class("simulators", simulator.name)
+    if not hasattr(cls, "faultless"):
+        return simulator
+    name, params = cls.faultless(cls.Config(**simulator.params))
+    return ComponentSpec(name=name, params=params)
+
+
+def _key(task: Task, garment: Garment, seed: int, simulator: ComponentSpec) -> str:
+    module = str(plugins.find("simulators", simulator.name).target)
+    content = {
+        "steps": task.model_dump(mode="json")["steps"],
+        "mesh": hashlib.sha256(garment.mesh.vertices.tobytes() + garment.mesh.triangles.tobytes()).hexdigest(),
+        "seed": seed,
+        "simulator": simulator.model_dump(mode="json"),
+        "source": _simulator_digest(module.partition(":")[0]),
+        "numba": versions().get("numba"),
+    }
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:40]
+
+
+def _write(path: Path, reference: Reference) -> None:
+    """Write all at once, so that a kill leaves no half reference and two workers never disturb each other."""
+    start, mask = reference.outcome.start, reference.outcome.mask
+    camera = start.camera
+    path.parent.mkdir(parents=True, exist_ok=True)
+    scratch = path.with_name(f".{path.stem}.{os.getpid()}.npz")
+    np.savez_compressed(
+        scratch,
+        positions=np.stack([state.positions for state in (start, *reference.after)]),
+        mask=np.packbits(mask),
+        camera=np.array([camera.width, camera.height, camera.focal, camera.elevation]),
+        names=np.array(list(start.keypoints)),
+        indices=np.array(list(start.keypoints.values())),
+    )
+    scratch.replace(path)
+
+
+def _read(path: Path) -> Reference:
+    with np.load(path, allow_pickle=False) as stored:
+        width, height, focal, elevation = stored["camera"]
+        camera = Camera(int(width), int(height), float(focal), float(elevation))
+        keypoints = {str(name): int(index) for name, index in zip(stored["names"], stored["indices"], strict=True)}
+        states = [SimState(positions, np.zeros_like(positions), keypoints, camera) for positions in stored["positions"]]
+        pixels = camera.width * camera.height
+        mask = np.unpackbits(stored["mask"], count=pixels).astype(bool).reshape(camera.height, camera.width)
+    return Reference(Outcome(states[0], states[-1], mask), tuple(states[1:]))

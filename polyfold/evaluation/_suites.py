@@ -1,0 +1,78 @@
+"""The task suites of the installed plugins."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from polyfold import plugins
+from polyfold.errors import ConfigError, PluginError
+from polyfold.tasks import OpenTask, Suite, Task, load_suite
+
+
+def suite(name: str) -> Suite:
+    """A registered task suite by name, its goals checked against the suite whose tasks they accept.
+
+    Raises:
+        PluginError: if there is no such suite.
+        ConfigError: if its file is wrong.
+    """
+    return _checked(name, str(plugins.find("tasks", name).target))
+
+
+def accepted_tasks(name: str, goal: OpenTask) -> tuple[Task, ...]:
+    """The tasks whose end states count as reaching a goal of the registered suite ``name``; often none."""
+    return _accepted(name, suite(name), goal)
+
+
+@cache
+def _checked(name: str, target: str) -> Suite:
+    found = _loaded(target)
+    for goal in found.goals:
+        _accepted(name, found, goal)
+    return found
+
+
+@cache
+def _loaded(target: str) -> Suite:
+    return load_suite(target)
+
+
+def _loaded_by_name(name: str) -> Suite:
+    """Without a check of its own goals, so that two suites may accept tasks of each other."""
+    return _loaded(str(plugins.find("tasks", name).target))
+
+
+def _accepted(name: str, found: Suite, goal: OpenTask) -> tuple[Task, ...]:
+    if not goal.accept:
+        return ()
+    where = str(plugins.find("tasks", name).target)
+    try:
+        source = found if found.accept_from in (name, found.name) else _loaded_by_name(found.accept_from)
+    except PluginError as error:
+        raise ConfigError(f"{where}: goal {goal.id}, field accept: {error}; set accept_from to such a suite") from error
+    try:
+        tasks = tuple(source.task(task_id) for task_id in goal.accept)
+    except ConfigError as error:
+        raise ConfigError(f"{where}: goal {goal.id}, field accept: {error}") from error
+    for task in tasks:
+        if task.garment != goal.garment:
+            raise ConfigError(
+                f"{where}: goal {goal.id}, field accept: {task.id} is for a {task.garment}, "
+                f"the goal for a {goal.garment}; accept tasks of its own garment"
+            )
+    return tasks
+
+
+def known_tasks(kind: str) -> list[Task]:
+    """The tasks of all installed suites for a kind of garment."""
+    return [task for name in plugins.names("tasks") for task in suite(name).for_garment(kind)]
+
+
+def find_task(task_id: str, kind: str) -> Task:
+    """A task by id. Raises ConfigError, naming what is known for the kind, if there is none."""
+    tasks = known_tasks(kind)
+    for task in tasks:
+        if task.id == task_id:
+            return task
+    known = ", ".join(task.id for task in tasks)
+    raise ConfigError(f"no task for a {kind} is called {task_id!r}; choose one of: {known or 'none is installed'}")

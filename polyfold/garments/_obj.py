@@ -1,0 +1,202 @@
+"""Garments from triangle meshes: an OBJ file and its keypoints, laid flat, cut out and sewn anew."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.errors import GarmentError
+from polyfold.garments._flatten import flatten, front_faces
+from polyfold.garments._garment import Garment
+from polyfold.garments._pattern import Pattern
+from polyfold.garments._twin import twin_from_outline
+
+Floats = NDArray[np.float64]
+Faces = NDArray[np.int64]
+
+DISTORTION = 0.15
+"""Largest accepted change of edge length by flattening, at the 95th percentile."""
+
+FLIPPED = 0.05
+"""Largest accepted share of the surface that turns over when it is flattened."""
+
+PLAUSIBLE = (0.1, 2.5)
+"""Longest side [m] of a mesh that is taken to be in metres."""
+
+
+def load_obj(
+    path: str | Path,
+    keypoints_json: str | Path,
+    kind: str,
+    pattern: Pattern,
+    size_m: float | None = None,
+    edge_length: float | None = None,
+) -> Garment:
+    """Build a garment from a mesh, such as a shirt in T-pose.
+
+    The front and back of the mesh are pressed flat with as little stretch as possible; the flat silhouette is then
+    meshed evenly and sewn like any other garment of its kind, so that it simulates as well whatever the triangles of
+    the file are like. Up, right and the viewer's side follow from the keypoints.
+
+    Args:
+        path: a triangle or polygon mesh in one connected piece.
+        keypoints_json: JSON object: keypoint name -> vertex, counted from 0 in the order of the file's ``v`` lines;
+            all names of the kind, left and right as a viewer in front of it sees them.
+        kind: registered garment kind.
+        pattern: how the garment is sewn.
+        size_m: longest side of the flat garment's bounding box [m]; by default the file is in metres.
+        edge_length: mesh size [m]; by default 10 mm for one layer, 12.5 mm for two.
+
+    Raises:
+        GarmentError: if the mesh is unusable, a keypoint is missing or unknown, or the mesh does not lie flat.
+    """
+    path = Path(path)
+    file_vertices = _file_vertices(path)
+    indices = _keypoint_indices(Path(keypoints_json), pattern, len(file_vertices))
+    vertices, faces = _read_mesh(path)
+    corners = _nearest(vertices, file_vertices[list(indices.values())])
+    places = dict(zip(indices, corners, strict=True))
+    right, up, viewer = _frame({name: vertices[vertex] for name, vertex in places.items()}, pattern, path)
+    front = front_faces(vertices, faces, viewer) if pattern.layers == 2 else np.ones(len(faces), bool)
+    if front.all() and pattern.layers == 2:
+        raise GarmentError(f"{path} has no back; a {kind} needs a closed body with openings")
+    flat = flatten(vertices, faces, front, right, up)
+    _check_flat(flat.distortion, flat.flipped, path)
+    size = _size(flat.points, size_m, path)
+    pixels = flat.points * np.array([1.0, -1.0])
+    outline = _silhouette(pixels, faces)
+    keypoints = {name: pixels[vertex] for name, vertex in places.items()}
+    return twin_from_outline(outline, kind, keypoints, pattern, size, edge_length, name=path.stem)
+
+
+def _file_vertices(path: Path) -> Floats:
+    """Positions in the order of the file's ``v`` lines, which keypoints refer to, shape (V, 3)."""
+    try:
+        lines = path.read_text("utf-8", errors="replace").splitlines()
+        rows = [[float(value) for value in line.split()[1:4]] for line in lines if line.startswith("v ")]
+        vertices = np.array(rows, float).reshape(-1, 3)
+    except OSError as error:
+        raise GarmentError(f"the mesh {path} can't be read ({error}); give an OBJ file") from error
+    except ValueError as error:
+        raise GarmentError(f"the mesh {path} has a broken vertex line ({error}); export it again") from error
+    if not len(vertices) or not np.isfinite(vertices).all():
+        raise GarmentError(f"{path} holds no finite vertices; give a triangle mesh in OBJ format")
+    return vertices
+
+
+def _keypoint_indices(path: Path, pattern: Pattern, count: int) -> dict[str, int]:
+    try:
+        content: Any = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise GarmentError(
+            f"the keypoints {path} can't be read ({error}); give a JSON object name -> vertex"
+        ) from error
+    if not isinstance(content, Mapping) or not content:
+        raise GarmentError(f"{path} holds no keypoints; write a JSON object name -> vertex index")
+    missing = [name for name in pattern.corners if name not in content]
+    unknown = [name for name in content if name not in pattern.corners]
+    if missing or unknown:
+        problems = [
+            f"{word}: {', '.join(names)}" for word, names in (("missing", missing), ("unknown", unknown)) if names
+        ]
+        raise GarmentError(f"wrong keypoints in {path} ({'; '.join(problems)}); name {', '.join(pattern.corners)}")
+    for name, index in content.items():
+        if not isinstance(index, int) or isinstance(index, bool) or not 0 <= index < count:
+            raise GarmentError(
+                f"the keypoint {name} in {path} is no vertex of the mesh: {index!r}; use 0 to {count - 1}"
+            )
+    return {name: content[name] for name in pattern.corners}
+
+
+def _read_mesh(path: Path) -> tuple[Floats, Faces]:
+    """Vertices and consistently wound faces of one connected manifold."""
+    import trimesh
+
+    try:
+        mesh = trimesh.load(path, force="mesh", process=False, maintain_order=True)
+        faces = getattr(mesh, "faces", np.empty((0, 3), int))
+    except Exception as error:  # trimesh raises whatever its parsers stumble over
+        raise GarmentError(f"the mesh {path} can't be read ({error}); export it again as OBJ") from error
+    if not len(faces):
+        raise GarmentError(f"{path} has no faces; export it as a surface, not as points")
+    if mesh.body_count > 1:
+        # Some exporters repeat vertices along texture seams. In one piece, vertices in one place are front and back.
+        mesh.merge_vertices(merge_tex=True, merge_norm=True)
+    mesh.update_faces(mesh.nondegenerate_faces())
+    mesh.update_faces(mesh.unique_faces())
+    _, owners = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
+    if (owners > 2).any():
+        raise GarmentError(
+            f"{path} is not a manifold: {(owners > 2).sum()} edges belong to three faces or more; repair it"
+        )
+    mesh = _largest_piece(mesh, path)
+    if not mesh.is_winding_consistent:
+        trimesh.repair.fix_winding(mesh)
+    return np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)
+
+
+def _largest_piece(mesh: Any, path: Path) -> Any:
+    """The mesh without loose scraps such as buttons."""
+    pieces = sorted(mesh.split(only_watertight=False), key=lambda piece: -piece.area)
+    if len(pieces) > 1 and pieces[1].area > 0.05 * pieces[0].area:
+        raise GarmentError(f"{path} consists of {len(pieces)} separate pieces; join them, or keep one garment per file")
+    piece = pieces[0]
+    piece.remove_unreferenced_vertices()
+    return piece
+
+
+def _nearest(vertices: Floats, points: Floats) -> list[int]:
+    from scipy.spatial import cKDTree
+
+    return [int(index) for index in cKDTree(vertices).query(points)[1]]
+
+
+def _frame(places: Mapping[str, Floats], pattern: Pattern, path: Path) -> tuple[Floats, Floats, Floats]:
+    """Unit vectors right, up and towards the viewer, as the keypoints say, each of shape (3,)."""
+    up = np.mean([places[name] for name in pattern.top], axis=0)
+    up = up - np.mean([places[name] for name in pattern.bottom], axis=0)
+    pairs = [(name, name.replace("_left", "_right")) for name in pattern.corners if name.endswith("_left")]
+    right = np.mean([places[b] - places[a] for a, b in pairs], axis=0)
+    size = np.ptp(np.array(list(places.values())), axis=0).max()
+    if np.linalg.norm(up) < 0.05 * size:
+        raise GarmentError(f"the keypoints of {path} tell no up from down; correct them")
+    up /= np.linalg.norm(up)
+    right = right - (right @ up) * up
+    if np.linalg.norm(right) < 0.05 * size:
+        raise GarmentError(f"the keypoints of {path} tell no left from right; correct them")
+    right /= np.linalg.norm(right)
+    return right, up, np.cross(right, up)
+
+
+def _check_flat(distortion: Floats, flipped: float, path: Path) -> None:
+    p95 = float(np.percentile(np.abs(distortion), 95))
+    if p95 > DISTORTION or flipped > FLIPPED:
+        raise GarmentError(
+            f"{path} does not lie flat: edges change length by {100 * p95:.0f} % (95th percentile) and "
+            f"{100 * flipped:.0f} % of it turns over; use a garment in T-pose, arms spread and without deep folds"
+        )
+
+
+def _size(points: Floats, size_m: float | None, path: Path) -> float:
+    if size_m is not None:
+        return size_m
+    size = float(np.ptp(points, axis=0).max())
+    if not PLAUSIBLE[0] <= size <= PLAUSIBLE[1]:
+        raise GarmentError(f"{path} is {size:.3g} units long, which are hardly metres; give its longest side in metres")
+    return size
+
+
+def _silhouette(points: Floats, faces: Faces) -> Floats:
+    """Outer outline of all faces, shape (K, 2)."""
+    import shapely
+
+    size = np.ptp(points, axis=0).max()
+    polygons = shapely.polygons(points[faces])
+    union = shapely.union_all(shapely.buffer(polygons, 1e-4 * size, join_style="mitre"), grid_size=1e-6 * size)
+    largest = max(shapely.get_parts(union), key=lambda part: part.area)
+    return shapely.get_coordinates(largest.exterior)[:-1]

@@ -1,0 +1,122 @@
+"""Outlines of real garments, from a JSON file, a mask or a photograph; all in pixels, y down."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.errors import GarmentError
+from polyfold.garments._silhouette import find_cloth
+from polyfold.geometry import contour_of, polygon_area
+
+WORKING_SIZE = 1000
+"""Photographs are searched at no more than this many pixels along their longer side."""
+
+
+def load_outline(path: str | Path) -> NDArray[np.float64]:
+    """Read an outline [px, y down], shape (M, 2).
+
+    The file holds ``[[x, y], …]``, or an object with that list under ``outline``, or a line of the aRTF Clothes
+    annotations with the polygons under ``mask`` (the largest one counts).
+
+    Raises:
+        GarmentError: if the file can't be read or holds no outline.
+    """
+    content = _json(Path(path))
+    if isinstance(content, dict):
+        content = content.get("outline", content.get("mask"))
+    polygons = content if _is_nested(content) else [content]
+    outlines = [_points(polygon, path) for polygon in polygons]
+    return max(outlines, key=lambda outline: abs(polygon_area(outline)))
+
+
+def load_mask(path: str | Path) -> NDArray[np.bool_]:
+    """Read a mask, bright where the garment is, or a cut-out that is transparent elsewhere, bool, shape (H, W).
+
+    Raises:
+        GarmentError: if the file is no picture, or is empty, full, or bright around the border.
+    """
+    picture = _opened(Path(path))
+    cut_out = "A" in picture.getbands() and picture.getchannel("A").getextrema()[0] < 255
+    mask = np.asarray(picture.getchannel("A") if cut_out else picture.convert("L")) > 127
+    if not mask.any() or mask.all():
+        raise GarmentError(f"the mask {path} is {'full' if mask.any() else 'empty'}; paint the garment white on black")
+    if np.concatenate([mask[0], mask[-1], mask[:, 0], mask[:, -1]]).mean() > 0.5:
+        raise GarmentError(
+            f"the mask {path} is bright around its border; paint the garment white on black, not inverted"
+        )
+    return mask
+
+
+def load_picture(path: str | Path) -> NDArray[np.uint8]:
+    """Read a photograph as it is meant to be seen, uint8 RGB, shape (H, W, 3)."""
+    from PIL import ImageOps
+
+    return np.asarray(ImageOps.exif_transpose(_opened(Path(path))).convert("RGB"))
+
+
+def outline_from_photo(path: str | Path) -> NDArray[np.float64]:
+    """Outline of the garment in a photograph with a plain background [px of the photograph], shape (M, 2).
+
+    Raises:
+        GarmentError: if the file is no picture or no garment stands out from the background.
+    """
+    import cv2
+
+    picture = load_picture(path)
+    height, width = picture.shape[:2]
+    scale = min(1.0, WORKING_SIZE / max(height, width))
+    size = (max(1, round(width * scale)), max(1, round(height * scale)))
+    smaller = cv2.resize(picture, size, interpolation=cv2.INTER_AREA) if scale < 1.0 else picture
+    try:
+        outline = contour_of(find_cloth(smaller))
+    except GarmentError as error:
+        raise GarmentError(f"{path}: {error}") from error
+    factor = np.array([width / size[0], height / size[1]])
+    return (outline + 0.5) * factor - 0.5
+
+
+def _json(path: Path) -> Any:
+    try:
+        text = path.read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise GarmentError(f"the outline {path} can't be read ({error}); give a JSON file") from error
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        raise GarmentError(f"the outline {path} is not valid JSON ({error}); write [[x, y], ...] in pixels") from error
+
+
+def _is_nested(content: Any) -> bool:
+    """Whether this is a list of polygons rather than of points."""
+    return bool(
+        isinstance(content, list) and content and isinstance(content[0], list)
+        and content[0] and isinstance(content[0][0], list)
+    )  # fmt: skip
+
+
+def _points(polygon: Any, path: str | Path) -> NDArray[np.float64]:
+    try:
+        points = np.asarray(polygon, float)
+    except (TypeError, ValueError):
+        points = np.empty(0)
+    if points.ndim != 2 or points.shape[1:] != (2,) or len(points) < 3 or not np.isfinite(points).all():
+        raise GarmentError(
+            f"{path} holds no outline: at least three finite points [[x, y], ...] are needed; correct it"
+        )
+    return points
+
+
+def _opened(path: Path) -> Any:
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        picture = Image.open(path)
+        picture.load()
+    except (OSError, UnidentifiedImageError, Image.DecompressionBombError) as error:
+        raise GarmentError(f"the picture {path} can't be read ({error}); give a PNG or JPEG file") from error
+    return picture

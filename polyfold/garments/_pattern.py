@@ -1,0 +1,30 @@
+"""What makes a kind of garment a kind: its corners, its layers, and where it is open."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """How a kind of garment is put together; enough to sew one from an outline.
+
+    Attributes:
+        corners: keypoint names in the order of the template's vertices, clockwise as seen.
+        top, bottom: the keypoints that are up and down when the garment lies upright.
+        size: longest side of a typical garment's bounding box [m].
+        layers: 1, or 2 for a front and a back.
+        openings: pairs of neighbouring or farther corners, in order, between which front and back are not sewn.
+        slits: corners at the inner end of a slit between their two neighbours, such as a crotch between the legs, that
+            an outline does not show when its sides touch; it is cut open then.
+        cyclic: see :class:`Garment`.
+    """
+
+    corners: tuple[str, ...]
+    top: tuple[str, ...]
+    bottom: tuple[str, ...]
+    size: float
+    layers: int = 1
+    openings: tuple[tuple[str, str], ...] = ()
+    slits: tuple[str, ...] = ()
+    cyclic: tuple[str, ...] = ()

@@ -1,0 +1,34 @@
+"""Plane and mask geometry, the camera and the directed fold line: pure functions and values."""
+
+from polyfold.geometry._camera import Camera
+from polyfold.geometry._fold_line import FoldLine
+from polyfold.geometry._masks import contour_of, fill_polygon, iou, span_on_mask
+from polyfold.geometry._plane import (
+    chamfer,
+    left_of,
+    mirror,
+    perpendicular_bisector,
+    polygon_area,
+    resample,
+    rotate,
+    signed_distance,
+    turn_onto,
+)
+
+__all__ = [
+    "Camera",
+    "FoldLine",
+    "chamfer",
+    "contour_of",
+    "fill_polygon",
+    "iou",
+    "left_of",
+    "mirror",
+    "perpendicular_bisector",
+    "polygon_area",
+    "resample",
+    "rotate",
+    "signed_distance",
+    "span_on_mask",
+    "turn_onto",
+]

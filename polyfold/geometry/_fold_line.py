@@ -1,0 +1,52 @@
+"""The directed fold line: what is on its left is lifted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from polyfold.geometry import _plane as geometry
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FoldLine:
+    """A directed fold line [px]. The cloth to its LEFT, as seen in the image, is lifted and mirrored across it."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+
+    @classmethod
+    def between(cls, start: ArrayLike, end: ArrayLike) -> FoldLine:
+        """Build from two array-likes of shape (2,)."""
+        (x0, y0), (x1, y1) = np.asarray(start, float), np.asarray(end, float)
+        return cls((float(x0), float(y0)), (float(x1), float(y1)))
+
+    @classmethod
+    def moving(cls, pick: ArrayLike, place: ArrayLike) -> FoldLine:
+        """The fold line that carries ``pick`` onto ``place``: their directed perpendicular bisector."""
+        return cls.between(*geometry.perpendicular_bisector(pick, place))
+
+    @property
+    def length(self) -> float:
+        """Distance from start to end [px]."""
+        return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
+
+    def lifts(self, points: ArrayLike) -> NDArray[np.bool_]:
+        """Which points [px], shape (..., 2), are on the lifted (left) side."""
+        return geometry.left_of(points, self.start, self.end)
+
+    def distance(self, points: ArrayLike) -> Floats:
+        """Signed distance [px] of points, shape (..., 2); positive on the lifted side."""
+        return geometry.signed_distance(points, self.start, self.end)
+
+    def mirror(self, points: ArrayLike) -> Floats:
+        """Points [px], shape (..., 2), reflected across the line."""
+        return geometry.mirror(points, self.start, self.end)
+
+    def reversed(self) -> FoldLine:
+        """The same line with the other side lifted."""
+        return FoldLine(self.end, self.start)

@@ -1,0 +1,98 @@
+"""The catalog of components with their provenance: plain records, filled by :mod:`polyfold.plugins`."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from importlib.metadata import PackageNotFoundError, distribution
+
+from polyfold.errors import PluginError
+
+_NAME = re.compile(r"[a-z0-9][a-z0-9+_-]{0,49}")
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Something wrong with a plugin: one sentence that says what to do, and the traceback if there was one."""
+
+    summary: str
+    traceback: str = ""
+
+
+@dataclass
+class Plugin:
+    """Where components come from: entry point, distribution, version, and what is wrong with it."""
+
+    name: str
+    distribution: str
+    version: str
+    module: str
+    problems: list[Problem] = field(default_factory=list)
+
+    @property
+    def label(self) -> str:
+        """Name with distribution and version, for messages."""
+        return f"{self.name!r} ({self.distribution} {self.version})" if self.distribution else f"{self.name!r}"
+
+
+@dataclass(frozen=True)
+class Component:
+    """One registration: a name, what it stands for, and who registered it."""
+
+    name: str
+    target: type | str
+    summary: str
+    needs: tuple[str, ...]
+    plugin: Plugin
+
+    def missing_packages(self) -> list[str]:
+        """Distributions in ``needs`` that are not installed."""
+        return [package for package in self.needs if not _installed(package)]
+
+
+def _installed(package: str) -> bool:
+    try:
+        distribution(re.split(r"[\s<>=!~\[;]", package, maxsplit=1)[0])
+    except PackageNotFoundError:
+        return False
+    return True
+
+
+class Catalog:
+    """Plugins found and components registered: ``components[kind][name]`` lists who registered the name."""
+
+    def __init__(self) -> None:
+        self.plugins: list[Plugin] = []
+        self.components: dict[str, dict[str, list[Component]]] = defaultdict(dict)
+
+    def registrar(self, kind: str, plugin: Plugin) -> Callable[..., None]:
+        """The ``register`` function that a plugin's hook is called with."""
+
+        def register(name: str, target: type | str, summary: str = "", needs: tuple[str, ...] | list[str] = ()) -> None:
+            if not _NAME.fullmatch(name):
+                raise PluginError(
+                    f"the component name {name!r} is not allowed; use lower-case letters, digits, '+', '-' and '_'"
+                )
+            if isinstance(target, str) and ":" not in target:
+                raise PluginError(f"the target {target!r} of {name!r} must read 'package.module:Class'")
+            self.add(kind, Component(name, target, summary, tuple(needs), plugin))
+
+        return register
+
+    def add(self, kind: str, component: Component) -> None:
+        """Add a registration; a name taken by another plugin is recorded against both."""
+        entries = self.components[kind].setdefault(component.name, [])
+        replaces = not component.plugin.distribution and component.plugin.name == "<session>"
+        if entries and not replaces:
+            for one, other in ((component, entries[0]), (entries[0], component)):
+                one.plugin.problems.append(
+                    Problem(
+                        f"its {kind} name {component.name!r} is also registered by {other.plugin.label}; "
+                        "uninstall or disable one of them"
+                    )
+                )
+        if replaces:
+            entries.clear()
+        entries.append(component)

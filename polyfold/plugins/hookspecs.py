@@ -1,0 +1,161 @@
+"""Every hook a plugin can implement.
+
+A plugin is a module (or any object) named by an entry point in the group ``polyfold``::
+
+    [project.entry-points.polyfold]
+    my-plugin = "my_package.hooks"
+
+    # my_package/hooks.py
+    from polyfold.hookspecs import hookimpl
+
+    @hookimpl
+    def register_policies(register):
+        register("centre", "my_package.centre:Centre", "picks nearest the centre of the flap")
+
+Each ``register_*`` hook gets a function ``register(name, target, summary="", needs=())``:
+
+* ``name``: what users type, lower case, e.g. ``csam+caso``;
+* ``target``: ``"package.module:Class"``, so that listing the plugin imports nothing heavy;
+* ``summary``: one line for ``polyfold plugins``;
+* ``needs``: distributions to install before the component can be used, as pip names them; a missing one is answered
+  with the pip command.
+
+What the class must do stands in :mod:`polyfold.interfaces`. The ``on_*`` hooks observe: what they return is ignored,
+and an error in one is recorded against its plugin without disturbing the run. No hook sits in the data path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import pluggy
+
+if TYPE_CHECKING:
+    from polyfold.types import Episode, EpisodeStart, Step
+
+
+hookspec = pluggy.HookspecMarker("polyfold")
+hookimpl = pluggy.HookimplMarker("polyfold")
+
+KINDS = (
+    "simulators",
+    "segmenters",
+    "groundings",
+    "planners",
+    "policies",
+    "llms",
+    "agents",
+    "garments",
+    "tasks",
+    "metrics",
+)
+"""The kinds of component, plural, in the order of the data flow."""
+
+Register = Callable[..., None]
+
+
+def singular(kind: str) -> str:
+    """``policies`` to ``policy``: what one component of a kind is called, and its field in an experiment."""
+    return "policy" if kind == "policies" else kind.removesuffix("s")
+
+
+def plural(field: str) -> str:
+    """``policy`` to ``policies``: the kind of component that an experiment names in a field."""
+    return "policies" if field == "policy" else f"{field}s"
+
+
+@hookspec
+def register_simulators(register: Register) -> None:
+    """Register simulators: :class:`polyfold.interfaces.Simulator`, cloth on a table under a camera."""
+
+
+@hookspec
+def register_segmenters(register: Register) -> None:
+    """Register segmenters: :class:`polyfold.interfaces.Segmenter`, picture to mask."""
+
+
+@hookspec
+def register_groundings(register: Register) -> None:
+    """Register groundings: :class:`polyfold.interfaces.Grounding`, picture and mask to scene."""
+
+
+@hookspec
+def register_planners(register: Register) -> None:
+    """Register planners: :class:`polyfold.interfaces.Planner`, sentence to subgoals to fold lines."""
+
+
+@hookspec
+def register_policies(register: Register) -> None:
+    """Register policies: :class:`polyfold.interfaces.Policy`, fold line to picks and places."""
+
+
+@hookspec
+def register_llms(register: Register) -> None:
+    """Register language-model backends: :class:`polyfold.interfaces.LLM`, messages to reply."""
+
+
+@hookspec
+def register_agents(register: Register) -> None:
+    """Register agents: :class:`polyfold.interfaces.Agent`, instruction and pictures to actions.
+
+    An agent made of components names their kinds, singular, in a class attribute ``uses``, for example
+    ``("segmenter", "policy")``; it is then constructed as ``Class(config, segmenter=..., policy=...)``.
+    """
+
+
+@hookspec
+def register_garments(register: Register) -> None:
+    """Register kinds of garment: :class:`polyfold.interfaces.GarmentKind`, polygon template and generator.
+
+    The name is the kind, as users type it: ``--garment skirt``.
+    """
+
+
+@hookspec
+def register_tasks(register: Register) -> None:
+    """Register task suites: ``target`` is ``"package:path/within/it.toml"``.
+
+    A suite holds tasks, whose folds are given (:mod:`polyfold.tasks`), goals, which say what counts as done and leave
+    the folds to the planner (:mod:`polyfold.goals`), or both. ``polyfold evaluate`` runs it when a study names it.
+    """
+
+
+@hookspec
+def register_metrics(register: Register) -> None:
+    """Register metrics: :class:`polyfold.interfaces.Metric`, final state and reference to a number."""
+
+
+@hookspec
+def register_commands(register: Register) -> None:
+    """Register CLI verbs. ``target`` is a class or module with ``configure(parser)`` and ``run(arguments) -> int``."""
+
+
+@hookspec
+def register_prompts(register: Register) -> None:
+    """Register prompt folders: ``target`` is ``"package:folder"`` with one sub-folder per role."""
+
+
+@hookspec
+def on_study_start(study: Any) -> None:
+    """A grid of episodes begins."""
+
+
+@hookspec
+def on_episode_start(start: EpisodeStart) -> None:
+    """An episode begins: the garment lies on the table and the subgoals are known."""
+
+
+@hookspec
+def on_step(step: Step) -> None:
+    """One fold was executed."""
+
+
+@hookspec
+def on_episode_end(episode: Episode) -> None:
+    """An episode ended, well or not; ``episode.failure`` says which."""
+
+
+@hookspec
+def on_study_end(study: Any) -> None:
+    """A grid of episodes ended."""

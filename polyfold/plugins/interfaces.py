@@ -1,0 +1,227 @@
+"""What each kind of component must do. Implement the methods; no base class is needed.
+
+Every component class may carry a nested pydantic model ``Config``; its fields are the component's parameters on the
+command line, in TOML and in notebooks, and an instance of it is the constructor's only argument. A class without
+``Config`` takes no argument. Keep heavy imports inside methods, so that reading a ``Config`` stays cheap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, ClassVar, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.garments import Garment
+from polyfold.geometry import FoldLine
+from polyfold.polygon import Template
+from polyfold.types import Action, ActionMap, Decision, Observation, Outcome, Scene, SimState, Subgoal
+from polyfold.types._conversation import Message, Reply
+
+
+@runtime_checkable
+class Simulator(Protocol):
+    """Cloth on a table under a camera, moved by one or two arms. Deterministic for a seed on one machine."""
+
+    def reset(self, garment: Garment, seed: int) -> Observation:
+        """Lay the garment flat in a pose drawn from ``seed`` and return the first picture."""
+
+    def observe(self) -> Observation:
+        """Take a picture."""
+
+    def execute(self, action: Action) -> Observation:
+        """Do one fold, let the cloth settle and take a picture.
+
+        A pick off the cloth grasps nothing. Raises ActionError for pixels outside the image and SimulationError if the
+        cloth diverges; the state before the fold is kept in both cases.
+        """
+
+    def state(self) -> SimState:
+        """Privileged state, for metrics, oracle and rewards only."""
+
+    def restore(self, state: SimState) -> None:
+        """Return to a state of this garment, so that several picks can be tried from one."""
+
+    def close(self) -> None:
+        """Release what is held; the simulator can't be used afterwards."""
+
+
+@runtime_checkable
+class Segmenter(Protocol):
+    """Finds the cloth in a picture."""
+
+    def segment(self, observation: Observation) -> NDArray[np.bool_]:
+        """Mask of the cloth, bool, shape (H, W). Raises GroundingError when there is none."""
+
+
+@runtime_checkable
+class Grounding(Protocol):
+    """Turns a picture into a scene: a pure function, so that an episode can resume."""
+
+    def ground(
+        self,
+        observation: Observation,
+        mask: NDArray[np.bool_],
+        template: Template,
+        previous: Scene | None = None,
+        fold_line: FoldLine | None = None,
+    ) -> Scene:
+        """Ground one picture.
+
+        Args:
+            observation: the picture.
+            mask: the segmented cloth, bool, shape (H, W).
+            template: the polygon template of the garment's kind.
+            previous: the scene before the last fold; None at the start.
+            fold_line: the fold executed since ``previous``; None if nothing was folded.
+
+        Raises:
+            GroundingError: if the picture can't be explained.
+        """
+
+
+@runtime_checkable
+class LLM(Protocol):
+    """A chat model, real or rule-based. It sees only the messages."""
+
+    def complete(self, messages: Sequence[Message], params: Mapping[str, Any]) -> Reply:
+        """Answer a conversation. Raises LLMError when no answer can be had."""
+
+
+@runtime_checkable
+class Conversation(Protocol):
+    """The language model as the episode hands it to a planner: every exchange lands in the transcript."""
+
+    def ask(self, role: str, messages: Sequence[Message], params: Mapping[str, Any] | None = None) -> Reply:
+        """Ask in a role (``subgoals``, ``fold_line``, ...) and record messages and reply."""
+
+    def reject(self, reason: str) -> None:
+        """Record that the last reply can't be used, and why."""
+
+
+@runtime_checkable
+class Planner(Protocol):
+    """Splits an instruction into subgoals and turns each into a fold line (or, for direct planners, an action).
+
+    A planner that doesn't split instructions has a class attribute ``decomposes = False``: it returns the instruction
+    as its only subgoal and is asked to plan it again and again, each time on the scene as seen then, until it returns
+    None.
+    """
+
+    def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
+        """Decompose an instruction. Raises RefusedError with the reason when it can't or must not be done."""
+
+    def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine | Action | None:
+        """Plan one step on the scene as seen now; None when nothing is left to do.
+
+        Raises PlanError when no valid answer came after the repairs.
+        """
+
+
+@runtime_checkable
+class Policy(Protocol):
+    """Chooses picks and places for a fold line."""
+
+    def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
+        """Picks on the contour left of the line, places mirrored. Raises PlanError if no cloth lies left of it."""
+
+
+@runtime_checkable
+class ValuesPicks(Protocol):
+    """What a policy may do besides: say how good it takes every place to pick for (paper, Fig. 9).
+
+    Pictures of its folds then show it: filmstrips, the gallery of reports, ``polyfold maps``.
+    """
+
+    def action_map(self, fold_line: FoldLine, scene: Scene) -> ActionMap:
+        """Places to pick [px], shape (N, 2), and their values, shape (N,); higher is better, not finite is not drawn.
+
+        Called only when a picture is made, after the fold, so it must not change what the policy does. Raises
+        PlanError if it has no values for this line; the picture then goes without.
+        """
+
+
+def action_map_later(policy: Policy, fold_line: FoldLine, scene: Scene) -> Callable[[], ActionMap] | None:
+    """For a :class:`Decision`: a function that asks the policy once a picture is made; None if it can't say."""
+    return partial(policy.action_map, fold_line, scene) if isinstance(policy, ValuesPicks) else None
+
+
+@dataclass(frozen=True, eq=False)
+class Goal:
+    """What the loop hands an agent at the start: only what the agent ``requires``; the rest is None.
+
+    Attributes:
+        kind: garment kind.
+        template: polygon template of the kind.
+        seed: for the agent's own randomness.
+        instruction: the sentence.
+        conversation: the episode's language model.
+        subgoal_texts, subgoal_images, goal_image: accurate guidance, for agents that need it; with ``final`` guidance
+            the subgoals are the goal alone.
+        fold_lines: the ideal fold lines [px]; privileged.
+        state: function that returns the true state; privileged.
+        simulator: the simulator itself, to try folds in; privileged.
+    """
+
+    kind: str
+    template: Template
+    seed: int
+    instruction: str | None = None
+    conversation: Conversation | None = None
+    subgoal_texts: Sequence[str] | None = None
+    subgoal_images: Sequence[NDArray[np.uint8]] | None = None
+    goal_image: NDArray[np.uint8] | None = None
+    fold_lines: Sequence[FoldLine] | None = None
+    state: Any = None
+    simulator: Any = None
+
+
+@runtime_checkable
+class Agent(Protocol):
+    """Maps instruction and pictures to actions; ``polyfold`` composes grounding, planner, policy and LLM.
+
+    ``requires`` is a subset of {"instruction", "subgoal_texts", "subgoal_images", "goal_image", "fold_lines", "state",
+    "simulator"}; the last three are privileged and marked so wherever results are shown.
+    """
+
+    requires: ClassVar[frozenset[str]]
+
+    def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
+        """Start an episode; return the subgoals, or an empty sequence if the agent has none."""
+
+    def decide(self, observation: Observation) -> Decision | None:
+        """The next action, or None when done."""
+
+
+@runtime_checkable
+class GarmentKind(Protocol):
+    """A kind of garment: its polygon template and a generator of seeded instances.
+
+    With a class attribute ``pattern``, a :class:`polyfold.garments.Pattern` that says how it is sewn, real garments of
+    the kind can be twinned and meshes imported.
+    """
+
+    kind: ClassVar[str]
+
+    def template(self) -> Template:
+        """The polygon template."""
+
+    def generate(self, seed: int, edge_length: float = 0.0125) -> Garment:
+        """The seeded garment, meshed at about ``edge_length`` [m]; the default is the kind's own.
+
+        The same seed gives the same garment at every edge length.
+        """
+
+
+@runtime_checkable
+class Metric(Protocol):
+    """Scores how an episode ended against one or more references; the nearest reference counts."""
+
+    unit: ClassVar[str]
+    higher_is_better: ClassVar[bool]
+
+    def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
+        """The value, in ``unit``; NaN if there is nothing to measure."""

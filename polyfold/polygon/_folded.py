@@ -1,0 +1,189 @@
+"""A garment that has been folded: what lies where, in which layer, and what its outline is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from polyfold.errors import GarmentError
+from polyfold.geometry import FoldLine, rotate
+from polyfold.polygon._covering import inside_depth
+from polyfold.polygon._layers import Facet, fold_facets
+from polyfold.polygon._text import model_text
+
+Floats = NDArray[np.float64]
+
+_TOUCH = 1.0
+"""A vertex this close to a piece above it [px] counts as hidden: its position is not known better than that."""
+
+
+@dataclass(frozen=True, eq=False)
+class VertexState:
+    """One named vertex as it lies now.
+
+    Attributes:
+        point: position [px], shape (2,).
+        description: what it is, in words; says so when it is folded over.
+        layers: layers it belongs to, lowest first; a crease's end belongs to two or more.
+        visible: nothing lies on top of it.
+        reversed: the reverse side is up.
+    """
+
+    point: Floats
+    description: str
+    layers: tuple[int, ...]
+    visible: bool
+    reversed: bool
+
+
+@dataclass(frozen=True, eq=False)
+class FoldedModel:
+    """The parameterized polygon model of a garment after some folds; a value, like everything in a scene.
+
+    Attributes:
+        rest: vertices of the flat garment where it lay before the folds [px], shape (V, 2), in polygon order.
+        names: vertex names, in the same order.
+        descriptions: vertex name -> what it is, in words.
+        folds: the fold lines so far, oldest first, each in the frame of ``rest``.
+        kind: the garment kind.
+    """
+
+    rest: Floats
+    names: tuple[str, ...]
+    descriptions: Mapping[str, str]
+    folds: tuple[FoldLine, ...] = ()
+    kind: str = "cloth"
+    _facets: tuple[Facet, ...] | None = field(default=None, repr=False)
+    _cache: dict[str, object] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        rest = np.array(self.rest, float)
+        if rest.shape != (len(self.names), 2) or len(rest) < 3 or not np.isfinite(rest).all():
+            raise GarmentError(
+                f"rest must be finite pixels of shape ({len(self.names)}, 2), one row per name, got {rest.shape}"
+            )
+        rest.setflags(write=False)
+        object.__setattr__(self, "rest", rest)
+        object.__setattr__(self, "names", tuple(self.names))
+        object.__setattr__(self, "folds", tuple(self.folds))
+
+    def fold(self, line: FoldLine) -> FoldedModel:
+        """The model after one more fold: the cloth left of ``line`` is lifted, mirrored and laid on top.
+
+        Raises:
+            PlanError: if the line is too short, or leaves all cloth on one side; the message says which.
+        """
+        facets = fold_facets(self.facets(), np.array(line.start), np.array(line.end), len(self.folds) + 1)
+        return FoldedModel(self.rest, self.names, self.descriptions, (*self.folds, line), self.kind, facets)
+
+    def before(self, fold: int) -> FoldedModel:
+        """The model with only the first ``fold`` folds."""
+        return FoldedModel(self.rest, self.names, self.descriptions, self.folds[:fold], self.kind)
+
+    def facets(self) -> tuple[Facet, ...]:
+        """The flat pieces the garment consists of now."""
+        if self._facets is None:
+            flat = np.column_stack([np.eye(2), np.zeros(2)])
+            labels = tuple((name,) for name in self.names)
+            facets: tuple[Facet, ...] = (Facet(self.rest, labels, ("",) * len(labels), 0, False, flat),)
+            for number, line in enumerate(self.folds, start=1):
+                facets = fold_facets(facets, np.array(line.start), np.array(line.end), number)
+            object.__setattr__(self, "_facets", facets)
+        return self._facets
+
+    def outline(self) -> Floats:
+        """The silhouette [px], shape (N, 2): the largest outer ring of the union of all pieces."""
+        if "outline" not in self._cache:
+            from polyfold.polygon._covering import silhouette
+
+            self._cache["outline"] = silhouette([facet.polygon for facet in self.facets()])
+        return self._cache["outline"]
+
+    def vertices(self) -> dict[str, VertexState]:
+        """Every named vertex as it lies now: the template's in polygon order, then the creases' ends."""
+        if "vertices" not in self._cache:
+            self._cache["vertices"] = {name: self._state(name) for name in self._all_names()}
+        return dict(self._cache["vertices"])
+
+    def points(self) -> dict[str, Floats]:
+        """Name -> position [px], shape (2,)."""
+        return {name: state.point for name, state in self.vertices().items()}
+
+    def to_text(self, image_size: tuple[int, int]) -> str:
+        """The model for a language model: strict JSON in stable order, coordinates in whole pixels.
+
+        Args:
+            image_size: (width, height) [px].
+        """
+        return model_text(self.kind, self.vertices(), self.facets(), image_size)
+
+    def transformed(
+        self, angle: float, translation: ArrayLike = (0.0, 0.0), centre: ArrayLike = (0.0, 0.0)
+    ) -> FoldedModel:
+        """The whole model moved rigidly: turned by ``angle`` [rad] about ``centre`` [px], then shifted.
+
+        The angle is positive from x towards y: clockwise as seen in the image.
+        """
+        shift = np.asarray(translation, float)
+
+        def move(points: ArrayLike) -> Floats:
+            return rotate(points, angle, centre) + shift
+
+        folds = tuple(FoldLine.between(*move([line.start, line.end])) for line in self.folds)
+        return FoldedModel(move(self.rest), self.names, self.descriptions, folds, self.kind)
+
+    def with_last_fold(self, line: FoldLine) -> FoldedModel:
+        """The model with its last fold line replaced."""
+        if not self.folds:
+            raise GarmentError("the model has no fold to replace; use fold() to add one")
+        return self.before(len(self.folds) - 1).fold(line)
+
+    def _all_names(self) -> list[str]:
+        creases = [f"fold{k}_{end}" for k in range(1, len(self.folds) + 1) for end in ("start", "end")]
+        return [*self.names, *creases]
+
+    def _state(self, name: str) -> VertexState:
+        owners = [(facet, i) for facet in self.facets() for i, names in enumerate(facet.names) if name in names]
+        if owners:
+            facet, corner = max(owners, key=lambda owner: owner[0].layer)
+            point = facet.polygon[corner]
+        else:
+            facet, point = self._position_of_lost(name)
+            owners = [(facet, 0)]
+        covered = any(
+            other.layer > facet.layer and inside_depth(point, other.polygon) > -_TOUCH for other in self.facets()
+        )
+        layers = tuple(sorted({owner.layer for owner, _ in owners}))
+        return VertexState(point, self._describe(name, facet.flipped), layers, not covered, facet.flipped)
+
+    def _position_of_lost(self, name: str) -> tuple[Facet, Floats]:
+        """Piece and position of a vertex whose own piece was a dropped sliver: it moves with the nearest piece."""
+        origin = self._rest_point(name)
+
+        def depth(facet: Facet) -> float:
+            at_rest = (facet.polygon - facet.motion[:, 2]) @ facet.motion[:, :2]
+            return inside_depth(origin, at_rest)
+
+        nearest = max(self.facets(), key=depth)
+        return nearest, nearest.motion[:, :2] @ origin + nearest.motion[:, 2]
+
+    def _rest_point(self, name: str) -> Floats:
+        """Where on the flat garment a vertex lies; for a crease's end, as it was when it was made."""
+        if name in self.names:
+            return self.rest[self.names.index(name)]
+        number = int(name.removeprefix("fold").split("_")[0])
+        for facet in self.before(number).facets():
+            for i, names in enumerate(facet.names):
+                if name in names:
+                    return facet.motion[:, :2].T @ (facet.polygon[i] - facet.motion[:, 2])
+        raise GarmentError(f"the crease of fold {number} left no trace; fold along a line that crosses more cloth")
+
+    def _describe(self, name: str, flipped: bool) -> str:
+        if name in self.names:
+            words = self.descriptions.get(name, name.replace("_", " "))
+            return f"{words} (folded over, reverse side up)" if flipped else words
+        number, end = name.removeprefix("fold").split("_")
+        return f"{end} of the crease made by fold {number}"

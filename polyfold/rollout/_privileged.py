@@ -1,0 +1,62 @@
+"""What agents may be told beyond the sentence: accurate subgoals, goal pictures and fold lines, made from a task.
+
+Baselines that can't decompose a sentence are given ``steps`` guidance; with ``final`` guidance they get the goal alone
+(paper, Tables II and III). Everything here comes from the true keypoints; PolyFold itself asks for none of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.garments import Garment
+from polyfold.geometry import FoldLine
+from polyfold.tasks import Task, fold_ideally, fold_lines
+from polyfold.tasks._words import describe
+from polyfold.types import Observation, SimState
+
+Image = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Guidance:
+    """Accurate help for one garment as it lies.
+
+    Attributes:
+        fold_lines: the ideal fold lines [px], one per step.
+        subgoal_texts: each step in words.
+        subgoal_images: what the garment should look like after each step, uint8, shape (H, W, 3).
+    """
+
+    fold_lines: tuple[FoldLine, ...]
+    subgoal_texts: tuple[str, ...]
+    subgoal_images: tuple[Image, ...]
+
+    @property
+    def goal_image(self) -> Image:
+        """What the garment should look like in the end."""
+        return self.subgoal_images[-1]
+
+
+def guidance_for(task: Task, garment: Garment, flat: SimState, seen: Observation) -> Guidance:
+    """Make the guidance for a task on a garment that lies flat.
+
+    Args:
+        task: the task; its kind must be the garment's.
+        garment: the garment.
+        flat: the state before the first fold.
+        seen: the picture of that state; its first pixel gives the table's colour.
+    """
+    lines = fold_lines(task, flat.keypoint_pixels())
+    masks = (fold_ideally(flat, garment.mesh, lines[: count + 1]).mask for count in range(len(lines)))
+    images = tuple(_drawn(mask, garment.colours[0], seen.rgb[0, 0]) for mask in masks)
+    return Guidance(tuple(lines), tuple(describe(fold) for fold in task.steps), images)
+
+
+def _drawn(mask: NDArray[np.bool_], cloth: tuple[int, int, int], table: Image) -> Image:
+    picture = np.empty((*mask.shape, 3), np.uint8)
+    picture[:] = table
+    picture[mask] = cloth
+    return picture

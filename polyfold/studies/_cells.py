@@ -1,0 +1,81 @@
+"""The episodes of a study, one by one."""
+
+from __future__ import annotations
+
+import fnmatch
+import hashlib
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from polyfold.errors import ConfigError
+from polyfold.evaluation import suite
+from polyfold.studies._study import Study, _nearest
+from polyfold.tasks import OpenTask, Task
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One episode of a study, by names alone, so that it travels to any worker."""
+
+    variant: str
+    task: str
+    garment: str
+    garment_seed: int
+    wording: int
+    seed: int
+
+    @property
+    def key(self) -> str:
+        """Unique name within the study."""
+        return f"{self.variant}/{self.task}/{self.garment_seed}/{self.wording}"
+
+
+def _check_metrics(study: Study) -> None:
+    """Raises ConfigError or PluginError if parameters are given to a metric that has none or does not exist."""
+    from polyfold import plugins
+
+    for name, params in study.metrics.items():
+        plugins.create("metrics", name, params)
+
+
+def cells(study: Study) -> Iterator[Cell]:
+    """Every episode of a study, in a fixed order that mixes kinds, so that progress is representative."""
+    _check_metrics(study)
+    chosen = _chosen_tasks(study)
+    for index in range(study.garments):
+        for task, variant in itertools.product(chosen, study.variants):
+            garment_seed = study.first_seed + index
+            for wording in _wordings(study, task, index):
+                name = f"{study.seed}/{task.id}/{garment_seed}/{wording}"
+                seed = int.from_bytes(hashlib.sha256(name.encode()).digest()[:4], "big")
+                yield Cell(variant, task.id, task.garment, garment_seed, wording, seed)
+
+
+def _chosen_tasks(study: Study) -> list[Task | OpenTask]:
+    tasks = suite(study.suite).entries
+    for pattern in study.tasks:
+        if not any(fnmatch.fnmatch(task.id, pattern) for task in tasks):
+            raise ConfigError(
+                f"no task of {study.suite!r} matches {pattern!r}; {_nearest(pattern, [task.id for task in tasks])}"
+            )
+    chosen = [task for task in tasks if _is_chosen(study, task)]
+    if not chosen:
+        raise ConfigError(
+            f"no task of {study.suite!r} is left by tasks={list(study.tasks)}, split={study.split!r} and "
+            f"steps={study.steps!r}; widen one of them"
+        )
+    return chosen
+
+
+def _is_chosen(study: Study, task: Task | OpenTask) -> bool:
+    if not any(fnmatch.fnmatch(task.id, pattern) for pattern in study.tasks):
+        return False
+    if isinstance(task, OpenTask):
+        return study.split is None and study.steps is None
+    return study.split in (None, task.split) and study.steps in (None, "single" if len(task.steps) == 1 else "multi")
+
+
+def _wordings(study: Study, task: Task | OpenTask, index: int) -> Sequence[int]:
+    count = max(1, len(task.instructions))
+    return {"first": [0], "in-turn": [index % count], "all": range(count)}[study.instructions]

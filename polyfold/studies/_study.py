@@ -1,0 +1,180 @@
+"""Studies: a grid of variants over tasks and garments, defined in TOML or in a few lines of Python.
+
+>>> import polyfold
+>>> study = polyfold.ablate(polyfold.load("experiments/smoke.toml"), "policy", ["caso", "farthest"])
+>>> results = polyfold.run(study, "runs/policies")
+>>> polyfold.table(results)
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from polyfold.config import Experiment, read_toml
+from polyfold.errors import ConfigError
+
+Overrides = dict[str, Any]
+
+
+class Study(BaseModel):
+    """What to run: a suite's tasks and goals on seeded garments, once per variant.
+
+    Attributes:
+        name: what results are labelled with.
+        suite: registered task suite.
+        tasks: patterns of ids of tasks and goals (``tshirt-*``); all by default.
+        garments: number of garments per kind, seeds from ``first_seed`` on.
+        instructions: ``first`` asks with the first wording, ``in-turn`` with the next one on each garment, ``all`` with
+            each of them.
+        edge_length: mesh size [m].
+        split: only the tasks that learning baselines may train on (``seen``), or only the others (``unseen``).
+        steps: only tasks of one fold (``single``), or only those of several (``multi``). Goals have neither a split nor
+            a number of folds and are left out by both.
+        reference: what results are compared with: the ``oracle``'s in the same simulator, or the ``ideal``, the flat
+            garment folded geometrically, which owes nothing to any simulator or policy.
+        metrics: parameters of metrics by name, for example ``{"mppe": {"align": true}}``.
+        published: success [%] that others published, by label and row (``tshirt``, ``all``, ``seen``), for the tables.
+        seed: of the run; part of every episode's seed.
+        base: the experiment that variants start from, as dotted paths or nested tables.
+        variants: name -> overrides by dotted path, for example ``{"farthest": {"policy": "farthest"}}``.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str = Field(pattern=r"^[A-Za-z0-9_.-]{1,60}$")
+    suite: str = "polyfold70"
+    tasks: tuple[str, ...] = ("*",)
+    garments: int = Field(1, ge=1, le=10_000)
+    first_seed: int = Field(0, ge=0)
+    instructions: Literal["first", "in-turn", "all"] = "in-turn"
+    edge_length: float = Field(0.0155, gt=0.004, le=0.05)
+    split: Literal["seen", "unseen"] | None = None
+    steps: Literal["single", "multi"] | None = None
+    reference: Literal["oracle", "ideal"] = "oracle"
+    metrics: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    published: dict[str, dict[str, float]] = Field(default_factory=dict)
+    seed: int = 0
+    base: Overrides = Field(default_factory=dict)
+    variants: dict[str, Overrides] = Field(default_factory=lambda: {"polyfold": {}}, min_length=1)
+
+
+def load(path: str | Path) -> Study:
+    """Read a study from TOML. Raises ConfigError with the file and the setting that is wrong."""
+    settings = read_toml(path)
+    try:
+        study = Study(**{"name": Path(path).stem, **settings})
+    except (ValidationError, TypeError) as error:
+        raise ConfigError(_problem(error, str(path))) from error
+    for variant in study.variants:
+        experiment_of(study, variant)
+    return study
+
+
+def _problem(error: Exception, source: str) -> str:
+    if not isinstance(error, ValidationError):
+        return f"{source}: {error}"
+    first = error.errors()[0]
+    where = ".".join(str(part) for part in first["loc"])
+    if first["type"] == "extra_forbidden":
+        return f"{source} has no setting {where!r}; {_nearest(where, list(Study.model_fields))}"
+    return f"{source} has a bad value for {where!r}: {first['msg']}; change it"
+
+
+def _nearest(name: str, known: Sequence[str]) -> str:
+    close = get_close_matches(name, known, n=1, cutoff=0.5)
+    return f"did you mean {close[0]!r}?" if close else f"the known ones are {', '.join(known)}"
+
+
+def ablate(base: Study, path: str, values: Sequence[Any], names: Sequence[str] | None = None) -> Study:
+    """A study with one variant per value of one setting.
+
+    Args:
+        base: the study to vary; its first variant is what the others differ from.
+        path: dotted path of the setting: ``"policy"``, ``"simulator.thickness"``.
+        values: its values.
+        names: names of the variants; by default the values.
+    """
+    return grid(base, {path: values}, names)
+
+
+def grid(base: Study, settings: dict[str, Sequence[Any]], names: Sequence[str] | None = None) -> Study:
+    """A study with one variant per combination of values; see :func:`ablate`."""
+    combinations = [dict(zip(settings, values, strict=True)) for values in itertools.product(*settings.values())]
+    names = names or [", ".join(_shown(value) for value in combination.values()) for combination in combinations]
+    if len(names) != len(combinations):
+        raise ConfigError(f"{len(combinations)} variants need as many names, not {len(names)}")
+    common = next(iter(base.variants.values()))
+    variants = {name: {**common, **combination} for name, combination in zip(names, combinations, strict=True)}
+    study = base.model_copy(update={"variants": variants})
+    for variant in variants:
+        experiment_of(study, variant)
+    return study
+
+
+def with_variants(study: Study, names: Sequence[str]) -> Study:
+    """The study with some of its variants, in the order given. Raises ConfigError for one that it does not have."""
+    for name in names:
+        if name not in study.variants:
+            raise ConfigError(
+                f"the study {study.name!r} has no variant {name!r}; {_nearest(name, list(study.variants))}"
+            )
+    return study.model_copy(update={"variants": {name: study.variants[name] for name in names}})
+
+
+def _shown(value: Any) -> str:
+    return str(value["name"]) if isinstance(value, dict) and "name" in value else str(value)
+
+
+def experiment_of(study: Study, variant: str) -> Experiment:
+    """The experiment of a variant. Raises ConfigError naming the wrong dotted path and the nearest right one."""
+    settings: dict[str, Any] = {}
+    for path, value in {**_flat(study.base), **_flat(study.variants[variant])}.items():
+        field, _, parameter = path.partition(".")
+        if field not in Experiment.model_fields:
+            raise ConfigError(f"variant {variant!r} sets {path!r}; {_nearest(field, list(Experiment.model_fields))}")
+        if not parameter:
+            settings[field] = value
+            continue
+        choice = settings.get(field, getattr(Experiment(), field).name)
+        named = {"name": choice} if isinstance(choice, str) else dict(choice)
+        settings[field] = {**named, parameter: value}
+    experiment = Experiment.of(**settings)
+    _check_parameters(experiment, variant)
+    return experiment
+
+
+def _flat(settings: Overrides) -> Overrides:
+    """Nested tables as dotted paths; a table with a name stays a component."""
+    flat: Overrides = {}
+    for key, value in settings.items():
+        if isinstance(value, dict) and "name" not in value:
+            flat |= {f"{key}.{inner}": content for inner, content in value.items()}
+        else:
+            flat[key] = value
+    return flat
+
+
+def _check_parameters(experiment: Experiment, variant: str) -> None:
+    from polyfold import plugins
+
+    kinds = {"policy": "policies"}
+    for field in Experiment.model_fields:
+        choice = getattr(experiment, field)
+        if isinstance(choice, str) or not choice.params:
+            continue
+        config = getattr(
+            plugins.component_class(kinds.get(field, f"{field}s"), choice.name.partition(":")[0]), "Config", None
+        )
+        known = list(config.model_fields) if config is not None else []
+        for parameter in choice.params:
+            if parameter not in known:
+                raise ConfigError(
+                    f"variant {variant!r} sets '{field}.{parameter}', which {choice.name!r} does not have; "
+                    + _nearest(f"{field}.{parameter}", [f"{field}.{name}" for name in known])
+                )

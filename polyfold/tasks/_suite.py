@@ -1,0 +1,225 @@
+"""Folding tasks as data: a suite file names, for every task, its folds on the flat garment's keypoints.
+
+A goal that leaves the folds open is a ``[[goal]]`` instead of a ``[[task]]``; :mod:`polyfold.goals` describes it. A
+suite may hold both.
+
+A suite is a TOML file::
+
+    schema_version = 1
+    name = "my-suite"
+
+    [points.square]                       # optional: names for points between keypoints
+    center = { bottom_left = 0.25, top_left = 0.25, top_right = 0.25, bottom_right = 0.25 }
+
+    [[task]]
+    id = "square-corner-top_left"
+    garment = "square"
+    type = "S-Corner"
+    steps = [{ pairs = [["top_left", "center"]] }]
+
+A step is one fold. ``pairs`` says which points come to lie on which: the fold line is the mirror line that does it
+best, and the first point of each pair is on the lifted side. ``crease`` gives two points of the line instead, and
+``lift`` a point on the lifted side. All points are those of the flat garment: a fold leaves the rest where it is.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from polyfold.errors import ConfigError
+from polyfold.tasks._goals import OpenTask
+
+
+def _as_weights(value: Any) -> Any:
+    return {value: 1.0} if isinstance(value, str) else value
+
+
+Point = Annotated[dict[str, float], BeforeValidator(_as_weights)]
+"""A point of the flat garment: keypoint name -> weight, weights summing to 1; in TOML a bare name will do."""
+
+
+class Fold(BaseModel):
+    """One fold: either ``pairs``, or ``crease`` and ``lift``."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    pairs: tuple[tuple[Point, Point], ...] | None = Field(None, min_length=1)
+    crease: tuple[Point, Point] | None = None
+    lift: Point | None = None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Fold:
+        if (self.pairs is None) == (self.crease is None) or (self.crease is None) != (self.lift is None):
+            raise ValueError("a step has either 'pairs', or 'crease' with 'lift'; give exactly one of the two")
+        for point in self._points():
+            if not point or abs(sum(point.values()) - 1.0) > 0.01:
+                raise ValueError(f"the weights of a point must sum to 1, got {point}; correct them")
+        return self
+
+    def _points(self) -> list[dict[str, float]]:
+        if self.pairs is not None:
+            return [point for pair in self.pairs for point in pair]
+        return [*(self.crease or ()), self.lift or {}]
+
+
+class Task(BaseModel):
+    """A goal that can be judged: the folds that reach it on a garment of one kind.
+
+    Attributes:
+        id: unique name within its suite.
+        garment: garment kind.
+        type: the family it belongs to, such as ``S-Corner``.
+        steps: the folds, in order.
+        instructions: sentences that ask for it, all meaning the same.
+        split: whether learning baselines may train on it (``seen``) or not (``unseen``); None where nobody decided.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    id: str = Field(pattern=r"^[a-z0-9_-]+$", max_length=80)
+    garment: str
+    type: str
+    steps: tuple[Fold, ...] = Field(min_length=1)
+    instructions: tuple[str, ...] = ()
+    split: Literal["seen", "unseen"] | None = None
+
+
+class Suite(BaseModel):
+    """A named list of tasks, of open tasks, or of both.
+
+    Attributes:
+        name: what it is called in messages.
+        description: one line.
+        accept_from: name of the registered suite whose tasks the goals accept; its own name for its own tasks.
+        tasks: the tasks with given folds (``[[task]]``).
+        goals: the open tasks (``[[goal]]``).
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    schema_version: Literal[1]
+    name: str
+    description: str = ""
+    accept_from: str = "polyfold70"
+    tasks: tuple[Task, ...] = Field((), alias="task")
+    goals: tuple[OpenTask, ...] = Field((), alias="goal")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_named_points(cls, suite: Any) -> Any:
+        """Put the weights in place of the points that the suite itself names."""
+        if not isinstance(suite, dict) or not isinstance(suite.get("points", {}), dict):
+            return suite
+        points = suite.get("points", {})
+        suite = {key: value for key, value in suite.items() if key != "points"}
+        if isinstance(suite.get("task"), list):
+            suite["task"] = [_substituted(task, points) for task in suite["task"]]
+        return suite
+
+    @model_validator(mode="after")
+    def _something_with_unique_ids(self) -> Suite:
+        if not self.entries:
+            raise ValueError("the suite is empty; give a [[task]] or a [[goal]]")
+        times = Counter(entry.id for entry in self.entries)
+        for entry_id, count in times.items():
+            if count > 1:
+                raise ValueError(f"the id {entry_id!r} is used twice; rename one")
+        return self
+
+    @property
+    def entries(self) -> tuple[Task | OpenTask, ...]:
+        """All that can be asked for: the tasks, then the open tasks."""
+        return (*self.tasks, *self.goals)
+
+    def task(self, task_id: str) -> Task:
+        """The task of this id. Raises ConfigError with the nearest ids when there is none."""
+        return _of_id(self.tasks, task_id, self.name)
+
+    def entry(self, entry_id: str) -> Task | OpenTask:
+        """The task or open task of this id. Raises ConfigError with the nearest ids when there is none."""
+        return _of_id(self.entries, entry_id, self.name)
+
+    def for_garment(self, kind: str) -> tuple[Task, ...]:
+        """The tasks on garments of this kind."""
+        return tuple(task for task in self.tasks if task.garment == kind)
+
+
+_Entry = TypeVar("_Entry", bound="Task | OpenTask")
+
+
+def _of_id(entries: Sequence[_Entry], entry_id: str, suite: str) -> _Entry:
+    for entry in entries:
+        if entry.id == entry_id:
+            return entry
+    known = [entry.id for entry in entries]
+    near = get_close_matches(entry_id, known, n=3)
+    hint = f"did you mean {' or '.join(near)}?" if near else f"it has {', '.join(known) or 'none'}"
+    raise ConfigError(f"the suite {suite} has no task {entry_id!r}; {hint}")
+
+
+def load_suite(source: str | Path) -> Suite:
+    """Read a suite from a path, or from ``"package:path/within/it.toml"`` as plugins register it.
+
+    Raises:
+        ConfigError: naming the file, the task or goal and the field that is wrong.
+    """
+    where, text = _read(source)
+    try:
+        content = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{where} is not valid TOML: {error}; correct it") from error
+    try:
+        return Suite.model_validate(content)
+    except ValidationError as error:
+        raise ConfigError(f"{where}: {_first_problem(error, content)}") from error
+
+
+def _substituted(task: Any, points: Mapping[str, Any]) -> Any:
+    """A raw task with its garment's named points replaced by their weights."""
+    named = points.get(task.get("garment"), {}) if isinstance(task, dict) else {}
+
+    def replaced(value: Any) -> Any:
+        if isinstance(value, str):
+            return named.get(value, value)
+        return [replaced(item) for item in value] if isinstance(value, list) else value
+
+    if not named or not isinstance(task.get("steps"), list):
+        return task
+    steps = [
+        {key: replaced(value) for key, value in step.items()} if isinstance(step, dict) else step
+        for step in task["steps"]
+    ]
+    return {**task, "steps": steps}
+
+
+def _read(source: str | Path) -> tuple[str, str]:
+    """What to call the source in messages, and its text."""
+    try:
+        if isinstance(source, str) and ":" in source and not Path(source).exists():
+            package, _, path = source.partition(":")
+            return source, files(package).joinpath(path).read_text("utf-8")
+        return str(source), Path(source).read_text("utf-8")
+    except (FileNotFoundError, ModuleNotFoundError) as error:
+        raise ConfigError(f"there is no task suite {source}; check the path") from error
+
+
+def _first_problem(error: ValidationError, content: Mapping[str, Any]) -> str:
+    """The first validation problem as one sentence with the task or goal and the field."""
+    problem = error.errors()[0]
+    place = list(problem["loc"])
+    message = problem["msg"].removeprefix("Value error, ")
+    if len(place) >= 2 and place[0] in ("task", "goal") and isinstance(place[1], int):
+        entry = content[place[0]][place[1]]
+        name = entry.get("id", f"number {place[1] + 1}") if isinstance(entry, dict) else f"number {place[1] + 1}"
+        field = ".".join(str(part) for part in place[2:]) or f"the {place[0]} itself"
+        return f"{place[0]} {name}, field {field}: {message}; see polyfold.{place[0]}s for the format"
+    field = ".".join(str(part) for part in place) or "the suite itself"
+    return f"field {field}: {message}; see polyfold.tasks for the format"

@@ -1,0 +1,41 @@
+"""The true state of the cloth: for metrics, oracle and rewards, never for agents."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.geometry._camera import Camera
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SimState:
+    """Privileged state of a simulated cloth: for metrics, oracle and training rewards, never for agents.
+
+    Attributes:
+        positions: particle positions [m], shape (N, 3).
+        velocities: particle velocities [m/s], shape (N, 3).
+        keypoints: named ground-truth keypoint -> particle index.
+        camera: the camera in use.
+        extra: simulator-specific arrays that :meth:`Simulator.restore` needs.
+    """
+
+    positions: Floats
+    velocities: Floats
+    keypoints: Mapping[str, int]
+    camera: Camera
+    extra: Mapping[str, Any] = field(default_factory=dict)
+
+    def keypoint_positions(self) -> dict[str, Floats]:
+        """Named keypoint -> position [m], shape (3,)."""
+        return {name: self.positions[index] for name, index in self.keypoints.items()}
+
+    def keypoint_pixels(self) -> dict[str, Floats]:
+        """Named keypoint -> projected pixel, shape (2,)."""
+        return {name: self.camera.to_pixels(point) for name, point in self.keypoint_positions().items()}

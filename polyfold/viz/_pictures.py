@@ -1,0 +1,80 @@
+"""An episode in pictures: the filmstrip, and how it shows itself in Jupyter."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from html import escape
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.errors import PlanError
+from polyfold.geometry import contour_of
+from polyfold.tasks import fold_ideally
+from polyfold.types import ActionMap, Episode, Step
+from polyfold.types._views import makes
+from polyfold.viz.draw._filmstrips import Frame, filmstrip
+from polyfold.viz.draw._overlays import overlay
+from polyfold.viz.draw._saving import png
+
+
+@makes(Episode, "filmstrip")
+def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
+    """One panel per fold, then the result beside the ideal, uint8, shape (H, W, 3)."""
+    return filmstrip(
+        [_frame(step) for step in episode.steps],
+        episode.final.rgb,
+        heading=f"{episode.garment.name}: {episode.instruction}",
+        result_caption=result_caption(episode),
+        ideal_outline=_ideal_outline(episode),
+    )
+
+
+@makes(Episode, "result")
+def result_of(episode: Episode) -> NDArray[np.uint8]:
+    """The last picture with the ideal outline dashed over it, uint8, shape (H, W, 3)."""
+    return overlay(episode.final, outline=_ideal_outline(episode))
+
+
+def _ideal_outline(episode: Episode) -> NDArray[np.float64] | None:
+    if not episode.ideal_lines:
+        return None
+    return contour_of(fold_ideally(episode.initial_state, episode.garment.mesh, episode.ideal_lines).mask)
+
+
+def _frame(step: Step) -> Frame:
+    title = step.subgoal.text if step.subgoal else f"fold {step.index + 1}"
+    title = f"again: {title}" if step.retry else title
+    caption = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
+    seen = step.observation.rgb
+    return Frame(seen, step.scene, step.fold_line, step.action, title, caption, action_map_of(step))
+
+
+def action_map_of(step: Step) -> ActionMap | None:
+    """Places to pick and the policy's values, asked for now; None where the policy has none."""
+    try:
+        return None if step.action_map is None else step.action_map()
+    except PlanError:
+        return None
+
+
+def result_caption(episode: Episode) -> str:
+    """How the episode came out, in one line."""
+    if episode.failure is not None:
+        return f"{episode.failure.stage}: {episode.failure.reason}"
+    if episode.fidelity is None:
+        return "nothing was folded"
+    error = episode.fidelity.moved_part_error_mm
+    against = "ideal" if episode.fidelity.reference == "keypoints" else "ideal along the planned lines"
+    moved = "" if np.isnan(error) else f", moved part off by {error:.0f} mm"
+    return f"IoU {episode.fidelity.iou:.3f} with the {against}{moved}"
+
+
+@makes(Episode, "html")
+def episode_html(episode: Episode) -> str:
+    """The filmstrip and the figures as self-contained HTML."""
+    picture = b64encode(png(filmstrip_of(episode))).decode()
+    return (
+        f'<figure style="margin:0"><img style="max-width:100%" src="data:image/png;base64,{picture}" '
+        f'alt="{escape(episode.instruction)}"><figcaption>{escape(result_caption(episode))}</figcaption></figure>'
+    )

@@ -1,0 +1,70 @@
+"""Animations small enough for a README."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold.errors import ConfigError
+from polyfold.viz.draw._canvas import resized
+
+Image = NDArray[np.uint8]
+
+
+def gif(
+    frames: Sequence[Image], path: str | Path, fps: float = 12.0, *, hold_s: float = 1.5, max_bytes: int = 3_000_000
+) -> Path:
+    """Write frames as an endless GIF with one palette for all; the last frame is held before it starts again.
+
+    A file larger than ``max_bytes`` is made again at three quarters of the size, until it fits.
+
+    Args:
+        frames: pictures of one size, uint8, shape (H, W, 3).
+        path: file to write; its folder is made if need be.
+        fps: frames per second; GIF rounds the duration to 10 ms.
+        hold_s: how long the last frame stays [s].
+        max_bytes: largest file allowed.
+
+    Raises:
+        ConfigError: if there are no frames or they differ in size.
+    """
+    if not len(frames):
+        raise ConfigError("an animation needs at least one frame; give the pictures in order")
+    if len({frame.shape for frame in frames}) > 1:
+        raise ConfigError("the frames of an animation differ in size; bring them to one size first")
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    durations = [max(20, round(100 / fps) * 10)] * len(frames)
+    durations[-1] = round(hold_s * 1000)
+    while True:
+        _write(frames, path, durations)
+        height, width = frames[0].shape[:2]
+        if path.stat().st_size <= max_bytes or min(height, width) < 64:
+            return path
+        frames = [resized(frame, round(width * 0.75), round(height * 0.75)) for frame in frames]
+
+
+def _write(frames: Sequence[Image], path: Path, durations: list[int]) -> None:
+    from PIL import Image as Pillow
+
+    palette = _palette(frames)
+    indexed = [
+        Pillow.fromarray(np.ascontiguousarray(frame)).quantize(palette=palette, dither=Pillow.Dither.NONE)
+        for frame in frames
+    ]
+    indexed[0].save(
+        path, save_all=True, append_images=indexed[1:], duration=durations, loop=0, optimize=True, disposal=1
+    )
+
+
+def _palette(frames: Sequence[Image]) -> Any:
+    """128 colours chosen from every frame; from every few pixels of it where there are many."""
+    from PIL import Image as Pillow
+
+    stride = max(1, round((sum(frame.size // 3 for frame in frames) / 500_000) ** 0.5))
+    sample = np.vstack([frame[::stride, ::stride] for frame in frames])
+    return Pillow.fromarray(np.ascontiguousarray(sample)).quantize(128, method=Pillow.Quantize.MEDIANCUT)

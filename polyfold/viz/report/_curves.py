@@ -1,0 +1,71 @@
+"""How success depends on the thresholds, so that no choice of them hides anything."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from polyfold.analysis._results import Record, compared
+from polyfold.evaluation import Threshold, needed_scale
+
+SCALES = tuple(float(scale) for scale in np.linspace(0.25, 2.0, 36))
+"""Factors on the thresholds of the preset ``polyfold``."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Share of successes with thresholds scaled by ``SCALES``.
+
+    Attributes:
+        shares, low, high: share and its 95 % Wilson interval, 0 to 1, one per scale.
+        n: number of episodes.
+    """
+
+    shares: tuple[float, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    n: int
+
+
+def success_curve(records: Sequence[Record]) -> Curve:
+    """Success of episodes as all thresholds of the preset ``polyfold`` are loosened or tightened together.
+
+    Bounds on errors are multiplied; of a bound on an overlap, what may be missing to 1 is. An episode that ended early
+    never succeeds; a goal that is done by its own bounds does with any thresholds.
+    """
+    needed = np.array([_needed_scale(record) for record in records])
+    counts = [int(np.count_nonzero(needed <= scale + 1e-9)) for scale in SCALES]
+    n = len(records)
+    intervals = [wilson(count, n) for count in counts]
+    shares = tuple(count / n if n else 0.0 for count in counts)
+    return Curve(shares, tuple(low for low, _ in intervals), tuple(high for _, high in intervals), n)
+
+
+def scaled(threshold: Threshold, scale: float) -> Threshold:
+    """A threshold loosened or tightened by a factor, as :func:`success_curve` does it."""
+    bound = 1.0 - scale * (1.0 - threshold.bound) if threshold.higher_is_better else scale * threshold.bound
+    return replace(threshold, bound=bound)
+
+
+def _needed_scale(record: Record) -> float:
+    """The smallest factor on the thresholds at which an episode succeeds."""
+    if record["failure"] is not None:
+        return math.inf
+    if (record.get("done") or {}).get("holds"):
+        return 0.0
+    if not compared(record):
+        return math.inf
+    return needed_scale({name: math.nan if value is None else value for name, value in record["metrics"].items()})
+
+
+def wilson(successes: int, n: int) -> tuple[float, float]:
+    """95 % interval of a share, 0 to 1; unlike the bootstrap it has a width where all or none succeeded."""
+    if n == 0:
+        return 0.0, 1.0
+    z = 1.959964
+    share, middle = successes / n, (successes + z * z / 2) / (n + z * z)
+    half = z / (n + z * z) * math.sqrt(n * share * (1 - share) + z * z / 4)
+    return max(0.0, middle - half), min(1.0, middle + half)

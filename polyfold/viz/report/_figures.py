@@ -1,0 +1,181 @@
+"""What the page's sections show, as rows and charts."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from polyfold.analysis import Estimate, Table, estimate, shown
+from polyfold.analysis._results import Record, compared
+from polyfold.evaluation import CAUSES
+from polyfold.viz.report._charts import Part, bar, curve_panel, dot
+from polyfold.viz.report._curves import success_curve
+from polyfold.viz.report._source import Source
+
+STAGES = ("reset", "subgoals", "grounding", "language", "policy", "execution")
+
+COLOUR = {
+    "reset": 6, "infrastructure": 6, "subgoals": 1, "subgoal": 1, "grounding": 2, "language": 3, "fold line": 3,
+    "policy": 4, "execution": 0,
+}  # fmt: skip
+"""Colours of stages and causes: what belongs together looks alike in both charts."""
+
+OTHER = 5
+
+
+def legend(names: Iterable[str]) -> list[tuple[str, int]]:
+    """Names of stages or causes with their colours."""
+    return [(name, COLOUR.get(name, OTHER)) for name in names]
+
+
+def _success(records: Sequence[Record], preset: str = "polyfold") -> Estimate:
+    return estimate([100.0 * record["success"][preset] for record in records])
+
+
+def headline(source: Source) -> list[dict[str, str]]:
+    """The first variant's figures: what is read first."""
+    records = source.of(source.variants[0])
+    metrics = (("mIoU", "miou", ""), ("moved part", "moved-part", "mm"))
+    figures = [("success", _success(records), "%"), ("success, strict", _success(records, "strict"), "%")]
+    figures += [
+        (label, estimate([record["metrics"][name] for record in records]), unit) for label, name, unit in metrics
+    ]
+    return [_figure(label, value, unit) for label, value, unit in figures]
+
+
+def _figure(label: str, value: Estimate, unit: str) -> dict[str, str]:
+    mean, _, interval = shown(value, 1 if unit else 3).partition(" ")
+    return {"label": label, "mean": mean, "interval": interval.strip("[]").replace(", ", " to "), "unit": unit}
+
+
+def success_panels(source: Source) -> list[dict[str, Any]]:
+    """Success of every variant, by kind: a dot with its interval."""
+    panels = []
+    for heading, kind in source.groups():
+        rows = []
+        for index, variant in enumerate(source.variants):
+            records = source.of(variant, kind)
+            if records:
+                value = _success(records)
+                rows.append({"variant": variant, "chart": dot(value, index), "mean": f"{value.mean:.1f}"})
+        panels.append({"heading": heading, "n": _most(source, kind), "rows": rows})
+    return panels
+
+
+def _most(source: Source, kind: str | None) -> int:
+    return max(len(source.of(variant, kind)) for variant in source.variants)
+
+
+def curve_panels(source: Source) -> list[dict[str, Any]]:
+    """Success over thresholds, by kind."""
+    bands = len(source.variants) <= 4
+    panels = []
+    for heading, kind in source.groups():
+        curves = [(variant, success_curve(source.of(variant, kind))) for variant in source.variants]
+        panels.append({"heading": heading, "n": _most(source, kind), "chart": curve_panel(heading, curves, bands)})
+    return panels
+
+
+def idle_references(source: Source) -> list[str]:
+    """Tasks and garments of the episodes in which the oracle moved nothing: there is no moved part to measure."""
+    idle = [record for record in source.records if compared(record) and _nothing_to_move(record)]
+    return [f"{record['task']} on {record['garment']} {record['garment_seed']}" for record in idle]
+
+
+def _nothing_to_move(record: Record) -> bool:
+    return record["metrics"].get("moved-part", 0.0) is None
+
+
+def _causes(records: Sequence[Record]) -> Counter[str]:
+    return Counter(record["cause"] or "unknown" for record in records if not record["success"]["polyfold"])
+
+
+def cause_names(source: Source) -> list[str]:
+    """Causes that occur, in the order of the pipeline."""
+    found = _causes(source.records)
+    return [cause for cause in CAUSES if cause in found] + sorted(set(found) - set(CAUSES))
+
+
+def cause_rows(source: Source) -> list[dict[str, Any]]:
+    """What became of every variant's episodes: causes of failures, and successes as the quiet rest."""
+    names, rows = cause_names(source), []
+    for variant in source.variants:
+        records = source.of(variant)
+        if records:
+            counts = _causes(records)
+            parts = [_part(name, counts[name], f"{counts[name]}", f"{name}: {counts[name]}") for name in names]
+            done = len(records) - counts.total()
+            parts.append(Part(None, done, f"{done} succeeded", f"succeeded: {done}"))
+            failed = f"{counts.total()} of {len(records)}"
+            rows.append({"variant": variant, "chart": bar(parts, len(records)), "value": failed})
+    return rows
+
+
+def _part(name: str, value: float, label: str, title: str) -> Part:
+    return Part(COLOUR.get(name, OTHER), value, label, title)
+
+
+def cause_table(source: Source) -> Table:
+    """Failures by variant, kind and cause."""
+    names, rows = cause_names(source), []
+    for variant in source.variants:
+        for heading, kind in source.groups():
+            records = source.of(variant, kind)
+            if records:
+                counts = _causes(records)
+                cells = [f"{counts[name]}" if counts[name] else "·" for name in names]
+                rows.append([variant, heading, str(len(records)), str(counts.total()), *cells])
+    return Table(["variant", "kind", "n", "failed", *names], rows)
+
+
+def stage_names(source: Source) -> list[str]:
+    """Stages that took time, in the order of an episode."""
+    found = {stage for record in source.records for stage in record["seconds"]}
+    return [stage for stage in STAGES if stage in found] + sorted(found - set(STAGES))
+
+
+def time_rows(source: Source) -> list[dict[str, Any]]:
+    """Mean time of an episode by stage, all variants on one scale."""
+    stages = stage_names(source)
+    means = {variant: _stage_means(source.of(variant), stages) for variant in source.variants}
+    longest = max((sum(mean.values()) for mean in means.values()), default=0.0)
+    return [
+        {
+            "variant": variant,
+            "chart": bar([_part(s, t, _seconds(t), f"{s}: {_seconds(t)}") for s, t in mean.items()], longest),
+            "value": _seconds(sum(mean.values())),
+        }
+        for variant, mean in means.items()
+        if mean
+    ]
+
+
+def _stage_means(records: Sequence[Record], stages: Sequence[str]) -> Mapping[str, float]:
+    if not records:
+        return {}
+    return {stage: statistics.fmean(record["seconds"].get(stage, 0.0) for record in records) for stage in stages}
+
+
+def time_table(source: Source) -> Table:
+    """Mean seconds by stage, and the mean, median and 95th percentile of whole episodes."""
+    stages, rows = stage_names(source), []
+    for variant in source.variants:
+        records = source.of(variant)
+        if not records:
+            continue
+        totals = sorted(sum(record["seconds"].values()) for record in records)
+        late = totals[min(len(totals) - 1, math.ceil(0.95 * len(totals)) - 1)]
+        means = _stage_means(records, stages)
+        cells = [f"{value:.3f}" if value else "·" for value in means.values()]
+        whole = [f"{value:.3f}" for value in (sum(means.values()), statistics.median(totals), late)]
+        rows.append([variant, str(len(records)), *cells, *whole])
+    return Table(["variant", "n", *stages, "mean [s]", "median [s]", "95th pct. [s]"], rows)
+
+
+def _seconds(value: float) -> str:
+    if value >= 100:
+        return f"{value:.0f} s"
+    return f"{value:.1f} s" if value >= 9.95 else f"{value:.2f} s" if value >= 0.0995 else f"{1000 * value:.0f} ms"

@@ -1,0 +1,116 @@
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from polyfold.geometry import FoldLine
+from polyfold.geometry import _plane as geometry
+
+coordinate = st.floats(-500, 500, allow_nan=False).map(lambda value: round(value, 3))
+point = st.tuples(coordinate, coordinate)
+cloud = arrays(float, st.tuples(st.integers(1, 30), st.just(2)), elements=coordinate)
+
+
+@st.composite
+def lines(draw):
+    start, end = draw(point), draw(point)
+    assume(np.hypot(end[0] - start[0], end[1] - start[1]) > 1)
+    return FoldLine(start, end)
+
+
+def test_left_is_left_as_seen_in_the_image():
+    to_the_right = FoldLine((0, 0), (10, 0))
+    assert to_the_right.lifts([(5, -1)])[0], "above a line that points right (y down) is its left"
+    up = FoldLine((0, 10), (0, 0))
+    assert up.lifts([(-1, 5)])[0], "left of a line that points up is its left"
+
+
+@given(lines(), cloud)
+def test_mirroring_twice_is_the_identity_and_changes_side(line, points):
+    assert np.allclose(line.mirror(line.mirror(points)), points, atol=1e-6)
+    assert np.allclose(line.distance(line.mirror(points)), -line.distance(points), atol=1e-6)
+
+
+@given(lines(), cloud)
+def test_reversed_line_lifts_the_other_side(line, points):
+    off = np.abs(line.distance(points)) > 1e-6
+    assert (line.lifts(points)[off] != line.reversed().lifts(points)[off]).all()
+
+
+@given(point, point)
+def test_moving_line_carries_pick_onto_place_and_lifts_it(pick, place):
+    assume(np.hypot(place[0] - pick[0], place[1] - pick[1]) > 0.01)
+    line = FoldLine.moving(pick, place)
+    assert np.allclose(line.mirror(pick), place, atol=1e-6)
+    assert line.lifts(pick)
+
+
+def test_coinciding_points_are_refused():
+    with pytest.raises(ValueError, match="coincide"):
+        geometry.signed_distance([(0, 0)], (1, 1), (1, 1))
+    with pytest.raises(ValueError, match="coincide"):
+        FoldLine.moving((1, 1), (1, 1))
+
+
+@given(cloud, st.floats(-7, 7), point)
+def test_rotation_keeps_distances_and_returns(points, angle, centre):
+    turned = geometry.rotate(points, angle, centre)
+    assert np.allclose(np.linalg.norm(turned - centre, axis=1), np.linalg.norm(points - centre, axis=1), atol=1e-6)
+    assert np.allclose(geometry.rotate(turned, -angle, centre), points, atol=1e-6)
+
+
+@given(st.floats(20, 150), st.floats(20, 150), st.floats(0, 3.1))
+def test_contour_runs_along_the_true_edge(width, height, angle):
+    corners = np.array([(-width, -height), (width, -height), (width, height), (-width, height)]) / 2
+    polygon = geometry.rotate(corners, angle) + 199.5
+    contour = geometry.contour_of(geometry.fill_polygon(polygon, 400, 400))
+    inside = geometry.rotate(contour - 199.5, -angle)
+    beyond = np.maximum(np.abs(inside[:, 0]) - width / 2, np.abs(inside[:, 1]) - height / 2)
+    assert np.abs(beyond).max() < 1.5
+    # A side along the pixel rows can lie anywhere between two rows of pixel centres.
+    assert abs(beyond.mean()) < 0.65
+
+
+def test_empty_mask_has_no_contour():
+    with pytest.raises(ValueError, match="empty"):
+        geometry.contour_of(np.zeros((10, 10), bool))
+
+
+@given(st.integers(3, 50), st.booleans())
+def test_resampling_is_even(count, closed):
+    square = np.array([(0, 0), (10, 0), (10, 10), (0, 10)], float)
+    points = geometry.resample(square, count, closed)
+    assert points.shape == (count, 2)
+    perimeter = 40 if closed else 30
+    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    assert gaps.max() <= perimeter / (count if closed else count - 1) + 1e-9
+
+
+@given(cloud)
+def test_chamfer_is_zero_to_itself_and_symmetric(points):
+    assert geometry.chamfer(points, points) == 0
+    assert geometry.chamfer(points, points + 3) == pytest.approx(geometry.chamfer(points + 3, points))
+
+
+def test_span_on_mask_runs_in_the_direction_of_the_line():
+    mask = np.zeros((100, 100), bool)
+    mask[20:80, 30:70] = True
+    start, end = geometry.span_on_mask(mask, (90, 50), (80, 50))
+    assert start[0] == pytest.approx(69.5, abs=1)
+    assert end[0] == pytest.approx(29.5, abs=1)
+    assert geometry.span_on_mask(mask, (0, 5), (10, 5)) is None
+
+
+def test_iou_of_empty_masks_is_one_and_of_disjoint_ones_zero():
+    a, b = np.zeros((4, 4), bool), np.zeros((4, 4), bool)
+    assert geometry.iou(a, b) == 1
+    a[0], b[1] = True, True
+    assert geometry.iou(a, b) == 0
+
+
+@given(cloud, st.floats(-3.1, 3.1), point, point)
+def test_the_turn_onto_moved_points_is_the_one_they_were_turned_by(points, angle, centre, shift):
+    assume(np.ptp(points, axis=0).max() > 1)
+    moved = geometry.rotate(points, angle, centre) + shift
+    assert geometry.turn_onto(points, moved) == pytest.approx(angle, abs=1e-6)

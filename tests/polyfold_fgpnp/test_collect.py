@@ -1,0 +1,262 @@
+"""Random interaction: what a data set holds, that killing loses nothing, and that nothing is taken on trust."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+import torch
+from few_folds import FOLDS, MIX, interaction
+from polyfold_fgpnp.data.collect import collect
+from polyfold_fgpnp.data.dataset import DatasetFolder, load_dataset
+from polyfold_fgpnp.data.interaction import execute, explore
+from polyfold_fgpnp.data.trials import RECIPES, Flap, draw_trials, parse_mix
+from polyfold_fgpnp.policies.affordance import PickConfig, coupled_pick, fold_region
+from polyfold_fgpnp.policies.learned import CoupledActionMap
+from polyfold_fgpnp.policies.networks import NetworkConfig, ValueNetwork
+from polyfold_fgpnp.policies.weights import Provenance, save_weights
+from polyfold_fgpnp.training.examples import make_examples
+
+from polyfold.cli import main
+from polyfold.errors import ConfigError, SimulationError
+from polyfold.types import Action
+
+
+def test_every_state_gets_the_mix_of_picks_and_half_the_states_are_folded(folds):
+    assert folds.states == 8
+    assert folds.folds == 8 * sum(MIX.values())
+    for recipe, count in MIX.items():
+        assert (folds["recipe"] == list(RECIPES).index(recipe)).sum() == 8 * count
+    assert 0.3 <= (folds["folds_before"] > 0).mean() <= 0.6
+
+
+def test_picks_lie_on_the_lifted_contour(folds):
+    for state in range(folds.states):
+        region = fold_region(folds.line(state), folds.scene(state))
+        for trial in np.flatnonzero(folds["trial_state"] == state):
+            for point in (folds["first"][trial], folds["second"][trial]):
+                assert np.hypot(*(region.points - point).T).min() < 1.0
+
+
+def test_the_pair_of_best_affordance_is_better_than_one_arm_by_both_rewards(folds):
+    for reward in ("particles", "contour"):
+        values = folds.reward(reward)
+        pairs, singles = values[folds.of_recipes("slid")], values[folds.of_recipes("single")]
+        assert np.median(pairs) > np.median(singles) + 0.1
+        assert values[folds.of_recipes("slid")].max() <= 1.0
+
+
+def test_an_interrupted_collection_goes_on_to_the_same_data(folds_folder, tmp_path):
+    again = tmp_path / "again"
+    shutil.copytree(folds_folder, again)
+    (again / "shards" / "00001.npz").unlink()
+    (again / "shards" / "00000.part77").write_bytes(b"cut off")
+    (again / "dataset.json").write_text(
+        json.dumps({**json.loads((again / "dataset.json").read_text()), "complete": False})
+    )
+    with pytest.raises(ConfigError, match="not complete"):
+        load_dataset(again)
+    found = collect(interaction(), FOLDS, again, progress=False)
+    assert found["hash"] == load_dataset(folds_folder).description["hash"]
+    assert not list(again.rglob("*.part*"))
+
+
+def test_other_parameters_and_changed_shards_are_refused(folds_folder, tmp_path):
+    with pytest.raises(ConfigError, match="seed 0 there, 5 asked"):
+        collect(interaction(seed=5), 28, folds_folder, progress=False)
+    changed = tmp_path / "changed"
+    shutil.copytree(folds_folder, changed)
+    shutil.copy(changed / "shards" / "00000.npz", changed / "shards" / "00001.npz")
+    with pytest.raises(ConfigError, match="have changed"):
+        load_dataset(changed)
+    with pytest.raises(ConfigError, match="have changed"):  # else the very command that resumes would bless them
+        collect(interaction(), FOLDS, changed, progress=False)
+
+
+def test_a_data_set_that_is_being_extended_is_not_complete_until_it_is_finished(folds_folder, tmp_path):
+    more = tmp_path / "more"
+    shutil.copytree(folds_folder, more)
+    folder = DatasetFolder(more, interaction().model_dump(mode="json"))
+    assert load_dataset(more).folds == FOLDS, "to open it changes nothing"
+    with np.load(more / "shards" / "00001.npz") as shard:
+        folder.write(3, dict(shard))
+    with pytest.raises(ConfigError, match="run the same `polyfold collect` again"):
+        load_dataset(more)
+    DatasetFolder(more, interaction().model_dump(mode="json")).finish()
+    assert load_dataset(more).folds > FOLDS
+
+
+def test_another_schema_is_refused_and_not_guessed(folds_folder, tmp_path):
+    other = tmp_path / "other"
+    shutil.copytree(folds_folder, other)
+    description = json.loads((other / "dataset.json").read_text())
+    (other / "dataset.json").write_text(json.dumps({**description, "schema_version": 99}))
+    with pytest.raises(ConfigError, match="schema version 99"):
+        load_dataset(other)
+
+
+class Diverging:
+    """A simulator whose every fold diverges."""
+
+    def restore(self, state):
+        pass
+
+    def execute(self, action):
+        raise SimulationError("it diverged; report it")
+
+
+def test_a_fold_that_diverges_is_recorded_as_such(monkeypatch, folds):
+    from polyfold_fgpnp.data import interaction as module
+
+    found = list(module.situations(interaction(), 0))
+    monkeypatch.setattr(module, "situations", lambda *_: [(Diverging(), s, situation) for _, s, situation in found[:1]])
+    shard = explore(interaction(), 0)
+    assert shard["diverged"].all()
+    assert len(shard["diverged"]) == sum(MIX.values())
+    assert np.isnan(shard["flap_mm"]).all()
+    outcome, mask = execute(Diverging(), None, found[0][2], Action([[1, 1]], [[2, 2]]))
+    assert outcome is None
+    assert not mask.any()
+
+
+def test_describe_counts_and_shows(folds_folder, capsys):
+    assert main(["collect", "--describe", str(folds_folder)]) == 0
+    text = capsys.readouterr().out
+    assert "56 folds from 8 states of 2 garments" in text
+    assert "| particles | slid | 8 |" in text
+    assert (folds_folder / "picks.png").stat().st_size > 10_000
+
+
+def test_a_mix_is_read_strictly():
+    assert parse_mix("uniform=3, single=1") == {"uniform": 3, "single": 1}
+    for wrong in ("unifrom=3", "uniform", "uniform=0", "uniform=x"):
+        with pytest.raises(ConfigError, match="RECIPE=COUNT"):
+            parse_mix(wrong)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--seeds", "9-3", "--out", "x"], "A-B"),
+        ([], "--out"),
+        (["--describe", "nowhere"], "no data set"),
+        (["--edge-length", "1", "--out", "x"], "--edge-length"),
+        (["--folds", "0", "--out", "x"], "1 or more"),
+        (["--workers", "0", "--out", "x"], "1 or more"),
+        (["--kind", "tent", "--out", "x"], "no garment is called 'tent'"),
+    ],
+)
+def test_wrong_options_are_answered_and_leave_no_folder_behind(arguments, message, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["collect", *arguments]) == 1
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.fixture(scope="module")
+def networks(tmp_path_factory):
+    """Files of untrained networks, which value the points of a contour at random."""
+    return {
+        name: untrained(tmp_path_factory.mktemp("networks") / f"{name}.safetensors", variant, seed)
+        for name, variant, seed in (("csam", "csam", 0), ("other", "csam", 1), ("pair", "pair", 0), ("1sam", "1sam", 0))
+    }
+
+
+def untrained(path, variant, seed):
+    torch.manual_seed(seed)
+    network = ValueNetwork(NetworkConfig(variant=variant, base=4, levels=2))
+    torch.nn.init.normal_(network.head.exit.weight if variant == "pair" else network.exit.weight)
+    save_weights(path, network, Provenance({"network": network.config.model_dump()}, (), 0.0, 1.0))
+    return path
+
+
+@pytest.fixture(scope="module")
+def chosen_folder(networks, tmp_path_factory):
+    out = tmp_path_factory.mktemp("chosen")
+    command = ["collect", "--out", str(out), "--weights", str(networks["csam"]), "--mix", "chosen=3,uniform=1"]
+    assert main([*command, "--folds", "1", "--seeds", "2000-2000", "--edge-length", "0.04"]) == 0
+    return out
+
+
+def test_chosen_picks_are_where_the_network_promises_most(chosen_folder, networks):
+    data = load_dataset(chosen_folder)
+    policy = CoupledActionMap(CoupledActionMap.Config(weights=str(networks["csam"])))
+    assert data.states == 4
+    for state in range(data.states):
+        trials = data.of_recipes("chosen")
+        firsts = data["first"][trials[data["trial_state"][trials] == state]]
+        points, values = policy.action_map(data.line(state), data.scene(state))
+        at = [int(np.argmin(np.hypot(*(points - first).T))) for first in firsts]
+        assert len(at) == 3
+        assert values[at[0]] > values.max() - 1e-3 * np.ptp(values), "the first is the best of all"
+        assert (values[at] >= np.quantile(values, 0.7)).all(), "the others are good"
+        apart = np.hypot(*(firsts[:, None] - firsts[None]).transpose(2, 0, 1))[np.triu_indices(3, 1)]
+        assert apart.min() > 0.045 * len(points), "and not the same again"
+        region = fold_region(data.line(state), data.scene(state))
+        partners = data["second"][trials[data["trial_state"][trials] == state]]
+        wanted = [coupled_pick(region, points[i], PickConfig()) for i in at]
+        assert np.allclose(partners, wanted, atol=0.5)
+
+
+def test_the_same_weights_give_the_same_data_wherever_their_file_is_and_others_are_refused(
+    chosen_folder, networks, tmp_path
+):
+    again, moved = tmp_path / "again", tmp_path / "moved.safetensors"
+    shutil.copytree(chosen_folder, again)
+    shutil.copy(networks["csam"], moved)
+    (again / "shards" / "00000.npz").unlink()
+    same = {"seeds": (2000, 2000), "edge_length": 0.04, "mix": {"chosen": 3, "uniform": 1}}
+    found = collect(interaction(**same, weights=moved), 1, again, progress=False)
+    assert found["hash"] == load_dataset(chosen_folder).description["hash"]
+    with pytest.raises(ConfigError, match="weights_hash"):
+        collect(interaction(**same, weights=networks["other"]), 1, again, progress=False)
+
+
+def test_chosen_picks_teach_the_coupled_map_and_pairs_only(chosen_folder):
+    data = load_dataset(chosen_folder)
+    counts = {name: int(make_examples([data], name, "canonical", "particles", "log").valid.sum()) for name in TAUGHT}
+    assert counts == TAUGHT
+    with pytest.raises(ConfigError, match="no data for 1sam"):
+        make_examples([data], "1sam", "canonical", "particles", "log")
+
+
+TAUGHT = {"csam": 16, "pair": 16, "2sam": 4}
+
+
+@pytest.mark.parametrize("variant", ["csam", "pair"])
+@pytest.mark.parametrize("count", [1, 4, 30])
+def test_so_many_chosen_picks_are_drawn_as_asked_and_differ(folds, networks, variant, count):
+    policy = CoupledActionMap(CoupledActionMap.Config(weights=str(networks[variant])))
+    line, scene = folds.line(0), folds.scene(0)
+    flap = Flap(fold_region(line, scene), lambda: policy.action_map(line, scene))
+    drawn = draw_trials(flap, {"chosen": count}, np.random.default_rng(0))
+    assert len({tuple(trial.first) for trial in drawn}) == len(drawn) == count
+    again = draw_trials(flap, {"chosen": count}, np.random.default_rng(0))
+    assert all((one.first == other.first).all() for one, other in zip(drawn, again, strict=True))
+
+
+def test_weights_and_the_recipe_that_asks_them_come_together(networks, tmp_path, capsys):
+    out = ["collect", "--out", str(tmp_path / "new")]
+    for arguments, message in (
+        (["--mix", "chosen=3"], "give its file with --weights"),
+        (["--weights", str(networks["csam"])], "add chosen"),
+        (["--mix", "chosen=3", "--weights", str(tmp_path / "none")], "polyfold train"),
+        (["--mix", "chosen=3", "--weights", str(networks["1sam"])], "holds weights for 1sam, not for csam or pair"),
+    ):
+        assert main([*out, *arguments]) == 1
+        assert message in capsys.readouterr().err
+    assert not (tmp_path / "new").exists(), "a refused collection leaves no folder behind"
+
+
+def test_data_collected_before_there_were_weights_is_still_read_and_resumed(folds_folder, tmp_path):
+    old = tmp_path / "old"
+    shutil.copytree(folds_folder, old)
+    description = json.loads((old / "dataset.json").read_text())
+    del description["parameters"]["weights_hash"]
+    (old / "dataset.json").write_text(json.dumps(description))
+    assert load_dataset(old).folds == FOLDS
+    assert collect(interaction(), FOLDS, old, progress=False)["hash"] == description["hash"]
+
+
+def test_recipes_keep_their_places_in_stored_data():
+    assert list(RECIPES) == ["uniform", "extreme", "slid", "pair", "single", "vertex", "chosen"]

@@ -1,0 +1,229 @@
+"""What the ``xpbd`` simulator promises, seen from outside, on coarse meshes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from experiments.benchmarks.cloth.measures import crossing_edges, layer_order, strain
+from polyfold import plugins
+from polyfold.errors import ActionError, SimulationError
+from polyfold.geometry import FoldLine
+from polyfold.tasks._ideal import LAYER_THICKNESS
+from polyfold.types import Action
+
+SEED = 2002
+EDGE = 0.022
+
+
+@pytest.fixture(scope="module")
+def garments():
+    return {
+        kind: plugins.create("garments", kind).generate(SEED, EDGE)
+        for kind in ("square", "rectangle", "tshirt", "pants")
+    }
+
+
+@pytest.fixture
+def simulator():
+    simulator = plugins.create("simulators", "xpbd")
+    yield simulator
+    simulator.close()
+
+
+def fold_over(simulator, picks: list[str], places: list[str]) -> Action:
+    pixels = simulator.state().keypoint_pixels()
+    return Action(np.array([pixels[name] for name in picks]), np.array([pixels[name] for name in places]))
+
+
+def half_of_square(simulator) -> Action:
+    return fold_over(simulator, ["bottom_left", "bottom_right"], ["top_left", "top_right"])
+
+
+def test_picture_shows_the_whole_garment_on_a_table_of_another_colour(simulator, garments):
+    for garment in garments.values():
+        picture = simulator.reset(garment, 3)
+        cloth = picture.depth < picture.camera.elevation - 0.001
+        assert picture.rgb.shape == (400, 400, 3)
+        assert picture.rgb.dtype == np.uint8
+        assert picture.depth.dtype == np.float32
+        assert np.isfinite(picture.depth).all()
+        border = np.concatenate([cloth[0], cloth[-1], cloth[:, 0], cloth[:, -1]])
+        assert not border.any()
+        assert 0.05 < cloth.mean() < 0.6
+        table = np.abs(picture.rgb.astype(int) - picture.rgb[0, 0].astype(int)).sum(axis=2) < 12
+        assert (table == ~cloth).mean() > 0.98
+
+
+def test_garment_is_laid_within_the_rotation_and_follows_the_seed(garments):
+    straight = plugins.create("simulators", "xpbd", {"rotation_deg": 0.0})
+    straight.reset(garments["square"], 5)
+    corners = straight.state().keypoint_positions()
+    bottom = corners["bottom_right"] - corners["bottom_left"]
+    assert abs(np.degrees(np.arctan2(bottom[1], bottom[0]))) < 3
+    turned = plugins.create("simulators", "xpbd", {"rotation_deg": 20.0})
+    angles = []
+    for seed in range(8):
+        turned.reset(garments["square"], seed)
+        corners = turned.state().keypoint_positions()
+        bottom = corners["bottom_right"] - corners["bottom_left"]
+        angles.append(np.degrees(np.arctan2(bottom[1], bottom[0])))
+    assert np.ptp(angles) > 5
+    assert np.abs(angles).max() < 23
+
+
+def test_top_of_a_square_is_the_edge_nearest_the_top_of_the_image(garments):
+    simulator = plugins.create("simulators", "xpbd", {"rotation_deg": 180.0})
+    for seed in range(6):
+        simulator.reset(garments["square"], seed)
+        y = {name: pixel[1] for name, pixel in simulator.state().keypoint_pixels().items()}
+        assert y["top_left"] + y["top_right"] == min(
+            y[a] + y[b]
+            for a, b in (
+                ("bottom_left", "top_left"),
+                ("top_left", "top_right"),
+                ("top_right", "bottom_right"),
+                ("bottom_right", "bottom_left"),
+            )
+        )
+
+
+def test_half_fold_lands_on_the_other_half_without_strain(simulator, garments):
+    mesh = garments["square"].mesh
+    simulator.reset(garments["square"], 1)
+    before = simulator.state()
+    action = half_of_square(simulator)
+    simulator.execute(action)
+    after = simulator.state()
+    corners = after.keypoint_positions()
+    assert np.linalg.norm(corners["bottom_left"] - before.keypoint_positions()["top_left"]) < 0.02
+    line = FoldLine.moving(action.picks.mean(axis=0), action.places.mean(axis=0))
+    distance = line.distance(before.camera.to_pixels(before.positions)) / before.camera.pixels_per_metre
+    assert layer_order(after.positions, distance > 0, distance > 2 * EDGE, 0.5 * EDGE) > 0.98
+    assert np.percentile(np.abs(strain(mesh, after.positions)), 99) < 0.2
+    assert crossing_edges(mesh, after.positions) < 0.05
+    assert np.isfinite(after.positions).all()
+    assert (after.positions[:, 2] >= 0).all()
+
+
+@pytest.mark.parametrize(
+    ("kind", "picks", "places"),
+    [
+        ("tshirt", ["hem_left", "hem_right"], ["shoulder_left", "shoulder_right"]),
+        ("pants", ["leg_outer_left", "waist_left"], ["leg_outer_right", "waist_right"]),
+    ],
+)
+def test_two_layered_garments_fold_without_piercing_themselves(simulator, kind, picks, places):
+    # Fine enough to show a crease: how many edges pierce the other layer depends on the mesh.
+    garment = plugins.create("garments", kind).generate(SEED, 0.0155)
+    simulator.reset(garment, 1)
+    simulator.execute(fold_over(simulator, picks, places))
+    positions = simulator.state().positions
+    assert np.percentile(np.abs(strain(garment.mesh, positions)), 99) < 0.2
+    assert crossing_edges(garment.mesh, positions) < 0.06
+    rested = simulator.state()
+    simulator.wait(0.5)
+    assert np.linalg.norm(simulator.state().positions - rested.positions, axis=1).mean() < 0.005
+
+
+def test_same_seed_gives_the_same_bytes(garments):
+    def run():
+        simulator = plugins.create("simulators", "xpbd")
+        simulator.reset(garments["square"], 7)
+        picture = simulator.execute(half_of_square(simulator))
+        return picture.rgb.tobytes(), picture.depth.tobytes(), simulator.state().positions.tobytes()
+
+    assert run() == run()
+
+
+def test_restore_repeats_a_fold_exactly(simulator, garments):
+    simulator.reset(garments["square"], 2)
+    simulator.execute(half_of_square(simulator))
+    start = simulator.state()
+    second = fold_over(simulator, ["bottom_left"], ["top_right"])
+    first_time = simulator.execute(second).rgb
+    ended = simulator.state().positions
+    simulator.restore(start)
+    np.testing.assert_array_equal(simulator.state().positions, start.positions)
+    assert (simulator.execute(second).rgb == first_time).all()
+    np.testing.assert_array_equal(simulator.state().positions, ended)
+
+
+def test_recording_changes_nothing_and_sees_the_motion(simulator, garments):
+    simulator.reset(garments["square"], 2)
+    start, action = simulator.state(), half_of_square(simulator)
+    simulator.execute(action)
+    unseen = simulator.state().positions
+    simulator.restore(start)
+    frames = []
+    simulator.record(frames.append, frames_per_second=10)
+    simulator.execute(action)
+    simulator.record(None)
+    np.testing.assert_array_equal(simulator.state().positions, unseen)
+    assert len(frames) >= 8
+    assert min(frame.depth.min() for frame in frames) < frames[0].camera.elevation - 0.05
+
+
+def test_pick_off_the_cloth_changes_nothing(simulator, garments):
+    simulator.reset(garments["square"], 2)
+    before = simulator.state().positions
+    simulator.execute(Action(np.array([[5.0, 5.0]]), np.array([[200.0, 200.0]])))
+    np.testing.assert_array_equal(simulator.state().positions, before)
+
+
+def test_action_outside_the_image_is_refused_and_changes_nothing(simulator, garments):
+    simulator.reset(garments["square"], 2)
+    before = simulator.state().positions
+    with pytest.raises(ActionError, match="outside"):
+        simulator.execute(Action(np.array([[200.0, 200.0]]), np.array([[500.0, 200.0]])))
+    np.testing.assert_array_equal(simulator.state().positions, before)
+
+
+def test_divergence_is_reported_with_what_reproduces_it_and_undone(simulator, garments):
+    simulator.reset(garments["square"], 2)
+    action = half_of_square(simulator)
+    good = simulator.state()
+    broken = good.velocities.copy()
+    broken[3] = np.nan
+    simulator.restore(type(good)(good.positions, broken, good.keypoints, good.camera, good.extra))
+    with pytest.raises(SimulationError, match=r"seed 2002.*picks and places"):
+        simulator.execute(action)
+    np.testing.assert_array_equal(simulator.state().positions, good.positions)
+
+
+def test_state_of_another_garment_is_refused(simulator, garments):
+    simulator.reset(garments["tshirt"], 2)
+    other = simulator.state()
+    simulator.reset(garments["square"], 2)
+    with pytest.raises(SimulationError, match="particles"):
+        simulator.restore(other)
+
+
+def test_nothing_works_before_reset_or_after_close(simulator, garments):
+    with pytest.raises(SimulationError, match="reset"):
+        simulator.observe()
+    simulator.reset(garments["square"], 2)
+    simulator.close()
+    with pytest.raises(SimulationError, match="reset"):
+        simulator.state()
+
+
+def test_two_identical_picks_hold_the_cloth_once(simulator, garments):
+    simulator.reset(garments["square"], 2)
+    pixels = simulator.state().keypoint_pixels()
+    pick, place = pixels["bottom_left"], pixels["top_right"]
+    simulator.execute(Action(np.stack([pick, pick]), np.stack([place, place])))
+    assert np.isfinite(simulator.state().positions).all()
+
+
+def test_pick_equal_to_place_leaves_the_cloth_flat(simulator, garments):
+    simulator.reset(garments["square"], 2)
+    before = simulator.state()
+    pick = before.keypoint_pixels()["bottom_left"][None]
+    simulator.execute(Action(pick, pick))
+    moved = np.linalg.norm(simulator.state().positions - before.positions, axis=1)
+    assert moved.mean() < 0.005
+
+
+def test_layers_are_as_thick_as_the_ideal_takes_them_to_be():
+    assert plugins.component_class("simulators", "xpbd").Config().thickness == LAYER_THICKNESS
