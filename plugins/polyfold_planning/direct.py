@@ -13,7 +13,7 @@ from polyfold_planning.decomposition import SubgoalsConfig, split
 from polyfold_planning.motions import check_action
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import action_in, answer_object
-from polyfold_planning.scenes import prompt_about, shown_values
+from polyfold_planning.scenes import prompt_about, prompts_about, shown_values
 
 __all__ = ["DirectOneArm", "DirectTwoArms"]
 
@@ -31,6 +31,11 @@ class _Direct:
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
+
+    @classmethod
+    def prompts_read(cls, config: Config) -> list[str]:
+        """The prompts that it may use, each as ``role@version``; what a scene shows decides between those of a fold."""
+        return [f"subgoals@{config.subgoals_prompt}", *prompts_about(cls.role, config.motion_prompt)]
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""

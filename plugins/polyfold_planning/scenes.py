@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from polyfold.errors import ConfigError
-from polyfold.prompts import Prompt, load_prompt
+from polyfold.prompts import Prompt, load_prompt, prompt_names
 from polyfold.types import Scene
 
-__all__ = ["prompt_about", "shown_values"]
+__all__ = ["prompt_about", "prompts_about", "shown_values"]
 
 
 def prompt_about(scene: Scene, role: str, version: str) -> Prompt:
@@ -20,6 +20,16 @@ def prompt_about(scene: Scene, role: str, version: str) -> Prompt:
     if scene.shown == ("polygon",):
         return load_prompt(role, version)
     return load_prompt(role, f"{'-'.join(scene.shown)}-{version}")
+
+
+def prompts_about(role: str, version: str) -> list[str]:
+    """Every ``role@version`` that :func:`prompt_about` may choose, whatever the scenes show."""
+    named = [name.partition("@") for name in prompt_names()]
+    return [
+        f"{role}@{found}"
+        for found_role, _, found in named
+        if found_role == role and (found == version or found.endswith(f"-{version}"))
+    ]
 
 
 def shown_values(scene: Scene, prompt: Prompt, **more: Any) -> dict[str, Any]:

@@ -110,9 +110,10 @@ def test_parameters_reach_the_model_over_the_prompts_own():
     assert "max_tokens" in conversation.calls[0].params
 
 
-def test_prompts_are_named_with_their_hashes():
-    prompts = HierarchicalPlanner().prompts
-    assert set(prompts) == {"subgoals@v1", "fold_line@v1"}
+def test_every_prompt_that_a_scene_may_ask_for_is_named():
+    named = HierarchicalPlanner.prompts_read(HierarchicalPlanner.Config())
+    assert {"subgoals@v1", "fold_line@v1", "fold_line@image-v1", "fold_line@keypoints-image-v1"} <= set(named)
+    assert all(name.endswith("v1") for name in named)
 
 
 @pytest.mark.parametrize(
