@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 import traceback
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 import pluggy
 
-from polyfold.errors import did_you_mean
+from polyfold.errors import PluginError, did_you_mean
 from polyfold.plugins import hookspecs
+from polyfold.plugins._calling import call, implementations
 from polyfold.plugins._catalog import Catalog, Plugin, Problem
 
 GROUP = "polyfold"
@@ -68,16 +69,20 @@ def _load(catalog: Catalog, manager: pluggy.PluginManager, plugin: Plugin, entry
         plugin.problems.append(Problem(_load_failure(error, plugin), traceback.format_exc()))
         return
     try:
-        manager.register(target, plugin.label)
-    except (pluggy.PluginValidationError, ValueError) as error:
+        _register(manager, plugin, target)
+    except Exception as error:
+        plugin.problems.append(Problem(_registration_failure(error), traceback.format_exc()))
         manager.unregister(name=plugin.label)
-        plugin.problems.append(
-            Problem(f"a hook has the wrong arguments ({error}); compare with polyfold.plugins.hookspecs")
-        )
         return
-    _check_hooks(manager, plugin, target)
     for kind in (*hookspecs.KINDS, "commands", "prompts"):
         _call_registration(manager, plugin, target, f"register_{kind}", catalog.registrar(kind, plugin))
+
+
+def _register(manager: pluggy.PluginManager, plugin: Plugin, target: Any) -> None:
+    """Register a plugin's hooks and record those that nobody would call."""
+    if manager.register(target, plugin.label) is None:
+        raise PluginError(f"the entry point {plugin.module!r} is None")
+    plugin.problems += _uncalled_hooks(manager, target)
 
 
 def _load_failure(error: Exception, plugin: Plugin) -> str:
@@ -91,26 +96,35 @@ def _load_failure(error: Exception, plugin: Plugin) -> str:
     )
 
 
-def _check_hooks(manager: pluggy.PluginManager, plugin: Plugin, target: Any) -> None:
-    """Record hooks that nobody would call: misspelt ones, and functions that lack the mark."""
+def _registration_failure(error: Exception) -> str:
+    said = " ".join(str(error).split())
+    if isinstance(error, pluggy.PluginValidationError):
+        return f"a hook has the wrong arguments ({said}); compare with polyfold.plugins.hookspecs"
+    return f"its hooks could not be registered ({type(error).__name__}: {said}); update or uninstall it"
+
+
+def _uncalled_hooks(manager: pluggy.PluginManager, target: Any) -> Iterator[Problem]:
+    """Hooks that are misspelt, that wrap others', or that lack the mark."""
     known = [name for name in dir(hookspecs) if manager.parse_hookspec_opts(hookspecs, name) is not None]
     for caller in manager.get_hookcallers(target) or ():
-        if not caller.has_spec():
-            hint = did_you_mean(caller.name, known)
-            plugin.problems.append(Problem(f"it implements the unknown hook {caller.name!r}; {hint}"))
+        for implementation in implementations(manager, caller.name, target):
+            if not caller.has_spec() and not implementation.optionalhook:
+                hint = did_you_mean(caller.name, known)
+                yield Problem(f"it implements the unknown hook {caller.name!r}; {hint}")
+            elif implementation.wrapper or implementation.hookwrapper:
+                yield Problem(f"its hook {caller.name!r} is a wrapper, which is never run; write a plain function")
     for name in known:
         function = getattr(target, name, None)
         if callable(function) and manager.parse_hookimpl_opts(target, name) is None:
-            plugin.problems.append(Problem(f"its function {name!r} lacks @hookimpl, so it was not called; decorate it"))
+            yield Problem(f"its function {name!r} lacks @hookimpl, so it was not called; decorate it")
 
 
 def _call_registration(
     manager: pluggy.PluginManager, plugin: Plugin, target: Any, hook: str, register: Callable[..., None]
 ) -> None:
-    """Call one plugin's hook and no other's, so that its errors stay its own."""
-    others = [other for other in manager.get_plugins() if other is not target]
-    try:
-        manager.subset_hook_caller(hook, others)(register=register)
-    except Exception as error:
-        summary = f"{hook} failed ({type(error).__name__}: {error}); update or uninstall it"
-        plugin.problems.append(Problem(summary, traceback.format_exc()))
+    for implementation in implementations(manager, hook, target):
+        try:
+            call(implementation, {"register": register})
+        except Exception as error:
+            summary = f"{hook} failed ({type(error).__name__}: {error}); update or uninstall it"
+            plugin.problems.append(Problem(summary, traceback.format_exc()))

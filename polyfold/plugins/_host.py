@@ -7,6 +7,7 @@ its distribution, version and traceback, warned of once, and never takes the hos
 from __future__ import annotations
 
 import importlib
+import traceback
 import warnings
 from collections.abc import Mapping
 from importlib import import_module
@@ -16,9 +17,10 @@ import pluggy
 
 from polyfold.errors import ConfigError, PluginError, did_you_mean, validation_problem
 from polyfold.plugins import hookspecs
-from polyfold.plugins._catalog import Catalog, Component, Plugin
+from polyfold.plugins._calling import call, implementations
+from polyfold.plugins._catalog import Catalog, Component, Plugin, Problem
 from polyfold.plugins._discovery import disabled_by_environment, discover, new_manager
-from polyfold.plugins._observation import Observers, tell
+from polyfold.plugins._observation import Observers
 from polyfold.plugins._traits import Configurable, TakesArgument
 from polyfold.plugins.hookspecs import singular
 
@@ -41,6 +43,11 @@ class Host:
         self._by_hand: dict[tuple[str, str], Component] = {}
         self._observers = Observers()
         self._found: tuple[Catalog, pluggy.PluginManager] | None = None
+        self._warned: set[str] = set()
+
+    def __reduce__(self) -> str:
+        """Travel to other processes by name: the process's own host is each process's own."""
+        return "HOST"
 
     def catalog(self) -> Catalog:
         """The catalog of everything that is installed; discovered on first use."""
@@ -62,9 +69,15 @@ class Host:
                 found.add(kind, component)
             for plugin in found.plugins:
                 for problem in plugin.problems:
-                    warnings.warn(f"plugin {plugin.label}: {problem.summary}", stacklevel=2)
+                    self._warn(f"plugin {plugin.label}: {problem.summary}")
             self._found = found, manager
         return self._found
+
+    def _warn(self, message: str) -> None:
+        """Say it once, however often what it says is met."""
+        if message not in self._warned:
+            self._warned.add(message)
+            warnings.warn(message, stacklevel=3)
 
     def register(
         self, kind: str, name: str, target: type | str, summary: str = "", needs: tuple[str, ...] = ()
@@ -194,17 +207,32 @@ class Host:
         return cls, None
 
     def observe(self, observer: object) -> None:
-        """Let an object's ``on_*`` methods watch runs in this process, as a plugin's hooks do."""
-        self._observers.register(observer, f"{type(observer).__name__} at {id(observer):#x}")
+        """Let an object's ``on_*`` methods watch runs in this process, as a plugin's hooks do.
+
+        Raises:
+            PluginError: if it has none of them, or one asks for an argument that the event does not have.
+        """
+        self._observers.add(observer)
 
     def unobserve(self, observer: object) -> None:
-        """Stop an observer added by :meth:`observe`."""
-        self._observers.unregister(observer)
+        """Stop an observer added by :meth:`observe`. Raises PluginError if it does not observe."""
+        self._observers.discard(observer)
 
     def notify(self, hook: str, **values: Any) -> None:
         """Tell every observer; an observer's error is recorded against its plugin and warned of, nothing more."""
         found, manager = self._discovered()
-        tell((manager, self._observers), found.plugins, hook, values)
+        plugins = {plugin.label: plugin for plugin in found.plugins}
+        for implementation in (*implementations(manager, hook), *implementations(self._observers, hook)):
+            try:
+                call(implementation, values)
+            except Exception as error:
+                summary = f"its observer {hook} failed ({type(error).__name__}: {error}); the run went on without it"
+                self._record(plugins.get(implementation.plugin_name), implementation.plugin_name, summary)
+
+    def _record(self, plugin: Plugin | None, label: str, summary: str) -> None:
+        if plugin is not None and all(problem.summary != summary for problem in plugin.problems):
+            plugin.problems.append(Problem(summary, traceback.format_exc()))
+        self._warn(f"{'observer' if plugin is None else 'plugin'} {label}: {summary}")
 
 
 def _check_kind(kind: str) -> None:

@@ -1,64 +1,65 @@
-"""Telling observers what happens: an observer's error is recorded against it and never disturbs a run."""
+"""Objects of this process that watch runs without being plugins."""
 
 from __future__ import annotations
 
-import traceback
-import warnings
-from collections.abc import Iterator
-from typing import Any
+import inspect
 
 import pluggy
 
+from polyfold.errors import PluginError, did_you_mean
 from polyfold.plugins import hookspecs
-from polyfold.plugins._catalog import Plugin, Problem
 
-PREFIX = "on_"
-"""What the names of all hooks begin with that observe."""
+EVENTS = tuple(name for name in vars(hookspecs) if name.startswith("on_"))
+"""Names of the hooks that observe."""
 
 
 class Observers(pluggy.PluginManager):
-    """Objects of this process that watch runs: their ``on_*`` methods need no mark."""
+    """Objects whose ``on_*`` methods are called as plugins' hooks are, and need no mark."""
 
     def __init__(self) -> None:
         super().__init__(hookspecs.hookspec.project_name)
         self.add_hookspecs(hookspecs)
+        self._watching: list[tuple[object, _Methods]] = []
 
     def parse_hookimpl_opts(self, plugin: object, name: str) -> pluggy.HookimplOpts | None:
-        """Take every method that is named like a hook that observes."""
-        if not name.startswith(PREFIX) or not callable(getattr(plugin, name, None)):
+        """Take the methods that are named like events."""
+        if name not in EVENTS or name not in vars(plugin):
             return None
         return pluggy.HookimplOpts(
             wrapper=False, hookwrapper=False, optionalhook=False, tryfirst=False, trylast=False, specname=None
         )
 
-
-def tell(managers: tuple[pluggy.PluginManager, ...], plugins: list[Plugin], hook: str, values: dict[str, Any]) -> None:
-    """Call a hook of every observer with those of the values that it asks for.
-
-    Args:
-        managers: what observers are registered with.
-        plugins: records of the plugins, by label the names they are registered under.
-        hook: name of the hook.
-        values: its arguments by name.
-    """
-    for implementation in _implementations(managers, hook):
+    def add(self, observer: object) -> None:
+        """Call an object's methods from now on. Raises PluginError if none would ever be called."""
+        kind, methods = type(observer).__name__, _Methods(observer)
+        if not vars(methods):
+            misspelt = next((name for name in dir(observer) if name.startswith("on_")), "")
+            hint = did_you_mean(misspelt, EVENTS, otherwise="give it one")
+            raise PluginError(f"the observer {kind} has none of the methods {', '.join(EVENTS)}; {hint}")
         try:
-            implementation.function(*(values[name] for name in implementation.argnames))
-        except Exception as error:
-            summary = f"its observer {hook} failed ({type(error).__name__}: {error}); the run went on without it"
-            _record(plugins, implementation.plugin_name, summary)
+            self.register(methods, f"{kind} at {id(methods):#x}")
+        except pluggy.PluginValidationError as error:
+            raise PluginError(
+                f"the observer {kind} asks for what no event has ({error}); compare with polyfold.plugins.hookspecs"
+            ) from error
+        self._watching.append((observer, methods))
 
-
-def _implementations(managers: tuple[pluggy.PluginManager, ...], hook: str) -> Iterator[pluggy.HookImpl]:
-    for manager in managers:
-        yield from getattr(manager.hook, hook).get_hookimpls()
-
-
-def _record(plugins: list[Plugin], label: str, summary: str) -> None:
-    """Record a problem against its plugin, and warn of it the first time."""
-    for plugin in plugins:
-        if plugin.label == label:
-            if any(problem.summary == summary for problem in plugin.problems):
+    def discard(self, observer: object) -> None:
+        """Undo the last :meth:`add` of an object. Raises PluginError if there is none."""
+        for index in reversed(range(len(self._watching))):
+            found, methods = self._watching[index]
+            if found is observer:
+                del self._watching[index]
+                self.unregister(methods)
                 return
-            plugin.problems.append(Problem(summary, traceback.format_exc()))
-    warnings.warn(f"plugin {label}: {summary}", stacklevel=4)
+        raise PluginError(f"this {type(observer).__name__} does not observe; there is nothing to stop")
+
+
+class _Methods:
+    """An observer's methods; equal to no other's, whatever the observer's own class calls equal."""
+
+    def __init__(self, observer: object) -> None:
+        for name in EVENTS:
+            method = getattr(observer, name, None)
+            if inspect.isfunction(method) or inspect.ismethod(method):
+                setattr(self, name, method)

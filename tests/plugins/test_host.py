@@ -1,0 +1,232 @@
+"""Hosts: each has its own registrations and observers, and nothing that a plugin or an observer does takes one down."""
+
+import pickle
+import re
+import subprocess
+import sys
+from dataclasses import dataclass, field
+
+import pytest
+
+from polyfold import plugins
+from polyfold.errors import PluginError
+
+
+class Component:
+    """A component without parameters."""
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """Install a plugin of one module, given by its source; its entry point may name an object in it."""
+
+    def install(name, source, attribute=""):
+        (tmp_path / f"{name}.py").write_text(source)
+        info = tmp_path / f"{name}-1.0.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+        (info / "entry_points.txt").write_text(f"[polyfold]\n{name} = {name}{attribute}\n")
+        monkeypatch.syspath_prepend(tmp_path)
+
+    return install
+
+
+def problems(host, name):
+    return [problem.summary for plugin in host.catalog().plugins if plugin.name == name for problem in plugin.problems]
+
+
+def test_hosts_share_no_registrations():
+    one, other = plugins.Host(), plugins.Host()
+    one.register("policies", "mine", Component)
+    assert one.component_class("policies", "mine") is Component
+    for host in (other, plugins):
+        with pytest.raises(PluginError, match="no policy is called 'mine'"):
+            host.find("policies", "mine")
+    one.unregister("policies", "mine")
+    assert "mine" not in one.names("policies")
+
+
+def test_hosts_share_no_observers():
+    class Counter:
+        seen = 0
+
+        def on_step(self, step):
+            self.seen += 1
+
+    one, other, counter = plugins.Host(), plugins.Host(), Counter()
+    one.observe(counter)
+    other.notify("on_step", step=None, role="method")
+    assert counter.seen == 0
+    one.notify("on_step", step=None, role="method")
+    one.unobserve(counter)
+    one.notify("on_step", step=None, role="method")
+    assert counter.seen == 1
+
+
+def test_what_is_registered_by_hand_gives_way_to_what_it_hid():
+    host = plugins.Host()
+    caso = host.component_class("policies", "caso")
+    host.register("policies", "caso", Component)
+    assert host.component_class("policies", "caso") is Component
+    host.unregister("policies", "caso")
+    assert host.component_class("policies", "caso") is caso
+
+
+def test_functions_of_the_package_reach_the_host_of_the_process_that_calls_them():
+    sent = pickle.dumps(plugins.register)
+    assert len(sent) < 500, "only a name travels"
+    code = (
+        "import pickle, sys; from polyfold import plugins\n"
+        "pickle.load(sys.stdin.buffer)('policies', 'sent', 'nowhere:Nothing')\n"
+        "assert 'sent' in plugins.names('policies')"
+    )
+    subprocess.run([sys.executable, "-c", code], input=sent, check=True, timeout=60)
+
+
+def test_observers_are_given_what_they_ask_for():
+    seen = []
+
+    class Observer:
+        def on_step(self, step):
+            seen.append(("step", step))
+
+        def on_episode_start(self, start, role="method"):
+            seen.append((role, start))
+
+        def on_episode_end(self):
+            seen.append("end")
+
+    host = plugins.Host()
+    host.observe(Observer())
+    host.notify("on_episode_start", start=1, role="reference")
+    host.notify("on_step", step=2, role="reference")
+    host.notify("on_episode_end", episode=3, role="reference")
+    assert seen == [("reference", 1), ("step", 2), "end"]
+
+
+def test_an_observer_that_fails_disturbs_nobody_and_is_warned_of_once(recwarn):
+    seen = []
+
+    class Failing:
+        def on_step(self, step):
+            raise RuntimeError("trouble")
+
+    class Working:
+        def on_step(self, step):
+            seen.append(step)
+
+    host = plugins.Host()
+    for observer in (Failing(), Working(), Failing()):
+        host.observe(observer)
+    recwarn.clear()
+    for step in range(3):
+        host.notify("on_step", step=step, role="method")
+    assert seen == [0, 1, 2]
+    warned = [str(warning.message) for warning in recwarn if "trouble" in str(warning.message)]
+    assert len(warned) == 2, "once for each of the two"
+    assert all("Failing" in message for message in warned)
+
+
+@dataclass
+class Equal:
+    """Equal to others of its kind, and without a hash."""
+
+    seen: list = field(default_factory=list, compare=False)
+
+    def on_step(self, step):
+        self.seen.append(step)
+
+
+def test_observers_are_told_apart_by_identity():
+    host, one, other = plugins.Host(), Equal(), Equal()
+    host.observe(one)
+    host.observe(other)
+    host.notify("on_step", step=0, role="method")
+    host.unobserve(one)
+    host.notify("on_step", step=1, role="method")
+    assert (one.seen, other.seen) == ([0], [0, 1])
+
+
+@pytest.mark.parametrize(
+    ("methods", "says"),
+    [
+        ({"on_stepp": lambda self, step: None}, "did you mean 'on_step'"),
+        ({"on_step": lambda self, fold: None}, "fold"),
+        ({}, "none of the methods"),
+    ],
+)
+def test_an_observer_that_would_never_be_called_is_refused(methods, says):
+    observer = type("Observer", (), methods)()
+    with pytest.raises(PluginError, match=says):
+        plugins.Host().observe(observer)
+
+
+def test_stopping_who_does_not_observe_says_so():
+    with pytest.raises(PluginError, match="does not observe"):
+        plugins.Host().unobserve(object())
+
+
+@pytest.mark.filterwarnings("ignore:plugin 'odd_")
+@pytest.mark.parametrize(
+    ("source", "attribute", "says"),
+    [
+        ("nothing = None\n", ":nothing", "is None"),
+        ("class Rude:\n    def __dir__(self):\n        raise OSError('go away')\nrude = Rude()\n", ":rude", "go away"),
+        (
+            "from polyfold import hookimpl\n@hookimpl\ndef on_step(fold):\n    pass\n",
+            "",
+            "wrong arguments.*fold",
+        ),
+        (
+            "from polyfold import hookimpl\n@hookimpl(wrapper=True)\ndef on_step(step):\n    yield\n",
+            "",
+            "wrapper",
+        ),
+        (
+            "from polyfold import hookimpl\n@hookimpl\ndef register_llms(register):\n    register('Bad Name', 'a:B')\n",
+            "",
+            "is not allowed",
+        ),
+    ],
+    ids=["none", "rude", "arguments", "wrapper", "name"],
+)
+def test_what_is_wrong_with_a_plugin_is_recorded_against_it_alone(installed, request, source, attribute, says):
+    name = f"odd_{request.node.callspec.id}"
+    installed(name, source, attribute)
+    host = plugins.Host()
+    (summary,) = problems(host, name)
+    assert re.search(says, summary, re.DOTALL)
+    assert "\n" not in summary
+    assert "caso" in host.names("policies")
+    host.notify("on_step", step=None, role="method")
+
+
+@pytest.mark.filterwarnings("ignore:plugin 'unhashable'")
+def test_a_plugin_may_be_any_object(installed):
+    installed(
+        "unhashable",
+        "from dataclasses import dataclass\nfrom polyfold import hookimpl\n\n@dataclass\nclass Plugin:\n"
+        "    @hookimpl\n    def register_policies(self, register):\n        register('from-object', 'a:B')\n\n"
+        "plugin = Plugin()\n",
+        ":plugin",
+    )
+    host = plugins.Host()
+    assert problems(host, "unhashable") == []
+    assert {"from-object", "caso"} <= set(host.names("policies"))
+    assert "square" in host.names("garments")
+
+
+def test_a_problem_is_warned_of_once_however_much_is_registered_by_hand(installed, recwarn):
+    installed("undone", "def register_policies(register):\n    pass\n")
+    host = plugins.Host()
+    for name in ("one", "two"):
+        host.register("policies", name, Component)
+    assert len([warning for warning in recwarn if "lacks @hookimpl" in str(warning.message)]) == 1
+
+
+def test_a_hook_of_a_later_version_may_be_marked_optional(installed):
+    installed(
+        "early",
+        "from polyfold import hookimpl\n\n@hookimpl(optionalhook=True)\ndef on_wrinkle(wrinkle):\n    pass\n",
+    )
+    assert problems(plugins.Host(), "early") == []
