@@ -45,7 +45,7 @@ class XpbdSimulator:
         )
 
     @classmethod
-    def faultless(cls, config: Config) -> tuple[str, dict[str, Any]]:
+    def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:
         """The simulator that references are made in: the same cloth, visited in the usual order."""
         return "xpbd", config.model_dump(exclude_unset=True, exclude={"order"})
 
