@@ -12,10 +12,10 @@ from drawn_scenes import SQUARE, TSHIRT, model_of, scene_of
 from few_folds import MIX
 from polyfold_fgpnp.data.dataset import load_dataset
 from polyfold_fgpnp.policies import weights as weights_module
-from polyfold_fgpnp.policies.affordance import fold_region
 from polyfold_fgpnp.policies.learned import CoupledActionMap, OneActionMap, PairValue, TwoActionMaps, VertexLearned
 from polyfold_fgpnp.policies.networks import NetworkConfig, ValueNetwork
 from polyfold_fgpnp.policies.pairs import pair_geometry
+from polyfold_fgpnp.policies.region import fold_region
 from polyfold_fgpnp.policies.weights import load_weights, shipped_weights
 from polyfold_fgpnp.training import training
 from polyfold_fgpnp.training.examples import TRIALS_OF, label, make_examples

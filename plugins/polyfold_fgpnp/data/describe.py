@@ -13,8 +13,8 @@ from polyfold.viz import Card, overlay, score_sheet
 from polyfold_fgpnp.data.dataset import Dataset, load_dataset
 from polyfold_fgpnp.data.outcomes import mirrored_mask
 from polyfold_fgpnp.data.trials import RECIPES
-from polyfold_fgpnp.policies.affordance import fold_region
 from polyfold_fgpnp.policies.lines import LINE_KINDS
+from polyfold_fgpnp.policies.region import fold_region
 
 PERCENTILES = (5, 25, 50, 75, 95)
 

@@ -20,10 +20,11 @@ from polyfold.plugins.interfaces import Segmenter, Simulator
 from polyfold.types import Action, Observation, Scene, SimState
 from polyfold_fgpnp.data.outcomes import Expectation, Outcome, expect
 from polyfold_fgpnp.data.trials import MIX, RECIPES, Flap, ValueMap, draw_trials
-from polyfold_fgpnp.policies.affordance import FoldRegion, PickConfig, to_action
+from polyfold_fgpnp.policies.actions import PickConfig, to_action
 from polyfold_fgpnp.policies.caso import Caso
 from polyfold_fgpnp.policies.learned import CoupledActionMap
 from polyfold_fgpnp.policies.lines import LINE_KINDS, PLAUSIBLE, RandomLine, random_line
+from polyfold_fgpnp.policies.region import FoldRegion
 from polyfold_fgpnp.policies.weights import file_hash, weights_file
 
 LINES_PER_STAGE = (2, 1, 1)
@@ -47,14 +48,16 @@ class Interaction(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    kind: str = Field("tshirt", description="garment kind")
-    seeds: tuple[int, int] = Field((1000, 1099), description="first and last garment seed")
-    edge_length: float = Field(0.018, gt=0.005, le=0.05, description="edge length of the mesh [m]")
+    kind: str = Field(default="tshirt", description="garment kind")
+    seeds: tuple[int, int] = Field(default=(1000, 1099), description="first and last garment seed")
+    edge_length: float = Field(default=0.018, gt=0.005, le=0.05, description="edge length of the mesh [m]")
     mix: Mapping[str, int] = Field(default_factory=lambda: dict(MIX), description="trials of each recipe from a state")
     simulator: Mapping[str, Any] = Field(default_factory=dict, description="parameters of the simulator xpbd")
-    seed: int = Field(0, ge=0, description="of everything random")
-    weights: Path | None = Field(None, exclude=True, description="file of a network that the recipe chosen asks")
-    weights_hash: str | None = Field(None, description="SHA-256 of that file")
+    seed: int = Field(default=0, ge=0, description="of everything random")
+    weights: Path | None = Field(
+        default=None, exclude=True, description="file of a network that the recipe chosen asks"
+    )
+    weights_hash: str | None = Field(default=None, description="SHA-256 of that file")
 
     @model_validator(mode="before")
     @classmethod

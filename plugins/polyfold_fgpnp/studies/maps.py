@@ -15,7 +15,7 @@ from polyfold.errors import ConfigError
 from polyfold.evaluation import known_tasks
 from polyfold.plugins.interfaces import Policy, ValuesPicks
 from polyfold.tasks import Task, fold_lines
-from polyfold_fgpnp.policies.affordance import fold_region
+from polyfold_fgpnp.policies.region import fold_region
 
 if TYPE_CHECKING:
     from polyfold.viz import Card

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from polyfold.errors import ConfigError, PlanError
 from polyfold_fgpnp.data.dataset import Dataset
 from polyfold_fgpnp.data.trials import COUPLED
-from polyfold_fgpnp.policies.affordance import fold_region
 from polyfold_fgpnp.policies.frames import FrameName, view
 from polyfold_fgpnp.policies.pairs import pair_geometry
+from polyfold_fgpnp.policies.region import fold_region
 
 Floats = NDArray[np.float32]
 

@@ -45,18 +45,20 @@ class TrainingConfig(BaseModel):
 
     data: tuple[str, ...] = Field(min_length=1, description="data sets of `polyfold collect`")
     network: NetworkConfig = Field(default_factory=NetworkConfig)
-    folds: int | None = Field(None, ge=1, description="use the first so many folds of each data set")
-    reward: Literal["contour", "particles", "both"] = Field("particles", description="what counts as good")
-    scale: Literal["linear", "log"] = Field("log", description="how rewards become labels")
-    state_weight: float = Field(1.0, ge=0, description="weight of the error that all picks of a state share; 1: MSE")
-    epochs: int = Field(60, ge=1, description="passes over all states")
-    snapshots: tuple[int, ...] = Field((), description="epochs after which the weights so far are kept as well")
-    batch: int = Field(32, ge=1, description="states in a step")
-    learning_rate: float = Field(2e-3, gt=0, description="largest, of AdamW")
-    weight_decay: float = Field(1e-2, ge=0, description="of AdamW")
-    held_out: float = Field(0.1, gt=0, lt=1, description="share of the garments kept for validation")
-    precision: Literal["float32", "bfloat16"] = Field("float32", description="of the convolutions in training")
-    seed: int = Field(0, ge=0, description="of weights, order and augmentation")
+    folds: int | None = Field(default=None, ge=1, description="use the first so many folds of each data set")
+    reward: Literal["contour", "particles", "both"] = Field(default="particles", description="what counts as good")
+    scale: Literal["linear", "log"] = Field(default="log", description="how rewards become labels")
+    state_weight: float = Field(
+        default=1.0, ge=0, description="weight of the error that all picks of a state share; 1: MSE"
+    )
+    epochs: int = Field(default=60, ge=1, description="passes over all states")
+    snapshots: tuple[int, ...] = Field(default=(), description="epochs after which the weights so far are kept as well")
+    batch: int = Field(default=32, ge=1, description="states in a step")
+    learning_rate: float = Field(default=2e-3, gt=0, description="largest, of AdamW")
+    weight_decay: float = Field(default=1e-2, ge=0, description="of AdamW")
+    held_out: float = Field(default=0.1, gt=0, lt=1, description="share of the garments kept for validation")
+    precision: Literal["float32", "bfloat16"] = Field(default="float32", description="of the convolutions in training")
+    seed: int = Field(default=0, ge=0, description="of weights, order and augmentation")
 
     @model_validator(mode="after")
     def _snapshots_are_epochs(self) -> TrainingConfig:
