@@ -4,13 +4,6 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-from polyfold.config import read_toml
-from polyfold.errors import ConfigError
-
-if TYPE_CHECKING:
-    from polyfold_fgpnp.training.training import TrainingConfig
 
 
 class Train:
@@ -31,10 +24,11 @@ class Train:
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Train what is missing and say where the weights are."""
-        changes = {name: getattr(arguments, name) for name in ("data", "seed", "folds")}
-        config = read_config(arguments.config, **changes)
+        from polyfold_fgpnp.training.config import read_config
         from polyfold_fgpnp.training.training import train
 
+        changes = {name: getattr(arguments, name) for name in ("data", "seed", "folds")}
+        config = read_config(arguments.config, **changes)
         try:
             weights = train(config, arguments.out, arguments.device)
         except KeyboardInterrupt:
@@ -42,23 +36,3 @@ class Train:
             raise
         print(f"weights: {weights}")
         return 0
-
-
-def read_config(path: str | Path, **changes: object) -> TrainingConfig:
-    """A training configuration from TOML, with some values replaced where they are not None.
-
-    Raises:
-        ConfigError: naming the field that is wrong.
-    """
-    from pydantic import ValidationError
-
-    from polyfold_fgpnp.training.training import TrainingConfig
-
-    content = {**read_toml(path), **{name: value for name, value in changes.items() if value is not None}}
-    try:
-        return TrainingConfig(**content)
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        what = f"a bad value for {where!r}" if where else "values that don't go together"
-        raise ConfigError(f"{path} has {what}: {first['msg']}; correct it") from error
