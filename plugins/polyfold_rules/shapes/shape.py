@@ -42,7 +42,9 @@ class Shape:
     @classmethod
     def from_text(cls, content: Mapping[str, Any]) -> Shape:
         """Read a decoded model text; vertices without usable coordinates are passed over."""
-        image = content.get("image") if isinstance(content.get("image"), Mapping) else {}
+        image = content.get("image")
+        if not isinstance(image, Mapping):
+            image = {}
         size = (int(image.get("width", 400)), int(image.get("height", 400)))
         entries = _entries(content)
         points = {name: np.array([float(e["x"]), float(e["y"])]) for name, e in entries.items()}
