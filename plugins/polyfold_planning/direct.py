@@ -15,8 +15,6 @@ from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import action_in, answer_object
 from polyfold_planning.scenes import prompt_about, shown_values
 
-__all__ = ["DirectOneArm", "DirectTwoArms"]
-
 
 class _Direct:
     """Decomposes as ``hierarchical`` does, then asks for picks and places on what the scene shows."""
@@ -27,7 +25,7 @@ class _Direct:
     class Config(SubgoalsConfig):
         """Prompt versions and limits."""
 
-        motion_prompt: str = Field("v1", description="version of the prompt that asks for picks and places")
+        motion_prompt: str = Field(default="v1", description="version of the prompt that asks for picks and places")
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()

@@ -16,8 +16,6 @@ from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import answer_object, fold_line_in
 from polyfold_planning.scenes import prompt_about, shown_values
 
-__all__ = ["HierarchicalPlanner"]
-
 MIN_LENGTH = 10.0
 """Shortest fold line with a trustworthy direction [px]."""
 
@@ -31,7 +29,7 @@ class HierarchicalPlanner:
     class Config(SubgoalsConfig):
         """Prompt versions and limits."""
 
-        fold_line_prompt: str = Field("v1", description="version of the prompt that finds fold lines")
+        fold_line_prompt: str = Field(default="v1", description="version of the prompt that finds fold lines")
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()

@@ -12,8 +12,6 @@ from polyfold.errors import PlanError, RefusedError
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, Reply
 
-__all__ = ["action_in", "answer_object", "fold_line_in", "says_done", "subgoals_in"]
-
 _FENCE = re.compile(r"```[ \t]*(?:json|JSON)?[ \t]*\n(.*?)```", re.DOTALL)
 MAX_REPLY = 100_000
 

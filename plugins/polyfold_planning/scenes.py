@@ -8,8 +8,6 @@ from polyfold.errors import ConfigError
 from polyfold.prompts import Prompt, load_prompt
 from polyfold.types import Scene
 
-__all__ = ["prompt_about", "shown_values"]
-
 
 def prompt_about(scene: Scene, role: str, version: str) -> Prompt:
     """The prompt of a role for what the scene shows: ``v1`` for a polygon, else ``keypoints-image-v1`` and the like.

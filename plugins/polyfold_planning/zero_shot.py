@@ -15,8 +15,6 @@ from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import action_in, answer_object, says_done
 from polyfold_planning.scenes import shown_values
 
-__all__ = ["ZeroShotVLM"]
-
 
 class ZeroShotVLM:
     """Asks a vision model for one fold after the other until it says that the instruction is carried out.
@@ -32,9 +30,11 @@ class ZeroShotVLM:
 
         model_config = ConfigDict(frozen=True, extra="forbid")
 
-        prompt: str = Field("v1", description="version of the prompt")
-        max_folds: int = Field(8, ge=1, le=30, description="folds after which it is not asked again")
-        max_attempts: int | None = Field(None, ge=1, le=10, description="answers asked for; None: as the prompt says")
+        prompt: str = Field(default="v1", description="version of the prompt")
+        max_folds: int = Field(default=8, ge=1, le=30, description="folds after which it is not asked again")
+        max_attempts: int | None = Field(
+            default=None, ge=1, le=10, description="answers asked for; None: as the prompt says"
+        )
         params: dict[str, Any] = Field(default_factory=dict, description="parameters for the model, over the prompt's")
 
     def __init__(self, config: Config | None = None) -> None:

@@ -9,9 +9,9 @@ import subprocess
 import sys
 
 import pytest
-from polyfold_llms.requests import difference, request_of
+from polyfold_llms.request_keys import describe_difference, normalized_request
 
-from experiments.benchmarks.language.language import laid_garment, plan_ideally
+from experiments.benchmarks.language.understanding import laid_garment, plan_ideally
 from polyfold.api import run
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError, LLMError
@@ -252,10 +252,10 @@ def test_several_models_on_one_cassette_must_be_told_apart(cassette):
     create("llms", f"record:{cassette}").complete(messages, {})
     entry = lines_of(cassette)[0]
     from polyfold_llms.cassette import append_line
-    from polyfold_llms.requests import key_of
+    from polyfold_llms.request_keys import request_key
 
-    request = request_of("other", messages, {}, 0)
-    append_line(cassette, {**entry, "request": request, "key": key_of(request)})
+    request = normalized_request("other", messages, {}, 0)
+    append_line(cassette, {**entry, "request": request, "key": request_key(request)})
     with pytest.raises(ConfigError, match="it holds rules, other"):
         create("llms", f"replay:{cassette}")
     assert create("llms", f"replay:{cassette}", {"model": "other"}).complete(messages, {}).text
@@ -267,10 +267,10 @@ def test_a_missing_cassette_is_reported_before_anything_is_folded(tmp_path):
 
 
 def test_a_difference_names_settings_and_the_number_of_messages():
-    a = request_of("m", [{"role": "user", "content": "a"}], {}, 0)
-    b = request_of("n", [{"role": "user", "content": "a"}, {"role": "user", "content": "b"}], {}, 1)
+    a = normalized_request("m", [{"role": "user", "content": "a"}], {}, 0)
+    b = normalized_request("n", [{"role": "user", "content": "a"}, {"role": "user", "content": "b"}], {}, 1)
     assert (
-        difference(a, b)
+        describe_difference(a, b)
         == "model: recorded 'm', asked 'n'; sample: recorded 0, asked 1; recorded are 1 messages, asked 2"
     )
 

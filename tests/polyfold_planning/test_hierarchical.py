@@ -9,7 +9,7 @@ import pytest
 from polyfold_planning.grammar import check_subgoal
 from polyfold_planning.hierarchical import HierarchicalPlanner
 
-from experiments.benchmarks.language.language import laid_garment
+from experiments.benchmarks.language.understanding import laid_garment
 from polyfold.errors import PlanError, RefusedError
 from polyfold.geometry import fill_polygon
 from polyfold.plugins import create
@@ -64,7 +64,7 @@ def test_an_invalid_line_goes_back_with_the_reason(bad, words):
     assert found.start == (200.0, 60.0)
     assert words in conversation.calls[1].messages[-1]["content"]
     assert conversation.calls[1].messages[-2]["role"] == "assistant"
-    assert [entry["attempt"] for entry in conversation.calls] == [1, 2]
+    assert [call.attempt for call in conversation.calls] == [1, 2]
 
 
 def test_three_invalid_answers_end_it():

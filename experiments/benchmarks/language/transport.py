@@ -21,7 +21,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from polyfold_rules.rules import RulesLLM
+from polyfold_rules import RulesLLM
 
 from experiments.benchmarks.language.loopback import Received, Server, answering, serve
 from polyfold import plugins
