@@ -237,7 +237,7 @@ def test_a_study_with_a_key_leaves_it_nowhere_on_disk(server, tmp_path):
     server.script = lambda request: error(400, f"bad request by {request.headers['Authorization']}")
     study = study_of(server, "echo", key_env="OPENROUTER_API_KEY")
     records = run(study, tmp_path / "run", progress=False).records
-    assert ["bad request by" in record["failure"]["reason"] for record in records] == [True, True]
+    assert ["bad request by" in record.failure.reason for record in records] == [True, True]
     assert len(server.received) == 2
     assert files_with(FAKE_KEY[:18], tmp_path) == []
 
@@ -262,8 +262,8 @@ def test_faults_lose_no_finished_episode_and_are_tried_again(server, tmp_path):
     study = study_of(server, "faults")
     server.script = lambda request: healthy(request) if len(server.received) <= 2 else error(500)
     first, second = run(study, tmp_path / "run", progress=False).records
-    assert first["failure"] is None
-    assert (second["failure"]["stage"], second["cause"]) == ("unanswered", "infrastructure")
+    assert first.failure is None
+    assert (second.failure.stage, second.cause) == ("unanswered", "infrastructure")
     server.script = lambda request: error(401)
     with pytest.raises(LLMAccessError):
         run(study, tmp_path / "run", progress=False)
@@ -271,7 +271,7 @@ def test_faults_lose_no_finished_episode_and_are_tried_again(server, tmp_path):
     server.script = healthy
     again = run(study, tmp_path / "run", progress=False).records
     assert again[0] == first
-    assert [record["failure"] for record in again] == [None, None]
+    assert [record.failure for record in again] == [None, None]
 
 
 def test_the_default_never_imports_litellm():

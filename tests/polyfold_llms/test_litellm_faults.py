@@ -11,6 +11,7 @@ from polyfold_llms.retries import RetryPolicy, TransportError, call_with_retries
 from experiments.benchmarks.language.loopback import serve
 from experiments.benchmarks.language.understanding import laid_garment, plan_ideally
 from polyfold.errors import ConfigError, LLMAccessError, LLMError, PlanError, RefusedError
+from polyfold.logs import accounts
 from polyfold.plugins import create
 from polyfold.rollout import Transcript
 
@@ -125,8 +126,8 @@ def test_an_unusable_answer_goes_back_to_the_model_with_the_reason(model, server
     assert len(server.received) == 2
     assert "can't be used" in server.received[1].body["messages"][-1]["content"]
     assert all(message["content"] for message in server.received[1].body["messages"])
-    account = conversation.accounts()["subgoals"]
-    assert (account["calls"], account["repairs"], account["tries"]) == (2, 1, 2)
+    account = accounts(conversation.calls)["subgoals"]
+    assert (account.calls, account.repairs, account.tries) == (2, 1, 2)
 
 
 @pytest.mark.parametrize(
