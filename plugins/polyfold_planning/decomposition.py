@@ -15,7 +15,7 @@ from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import answer_object, subgoals_in
 
 
-class SubgoalsConfig(BaseModel):
+class DecompositionConfig(BaseModel):
     """Parameters of the decomposition."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -29,7 +29,9 @@ class SubgoalsConfig(BaseModel):
     params: dict[str, Any] = Field(default_factory=dict, description="parameters for the model, over the prompt's")
 
 
-def split(instruction: str, template: Template, conversation: Conversation, config: SubgoalsConfig) -> list[Subgoal]:
+def decompose(
+    instruction: str, template: Template, conversation: Conversation, config: DecompositionConfig
+) -> list[Subgoal]:
     """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""
 
     def read(reply: Reply) -> list[Subgoal]:

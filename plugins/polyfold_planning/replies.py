@@ -83,11 +83,14 @@ def fold_line_in(content: Mapping[str, Any]) -> FoldLine:
 
 
 def action_in(content: Mapping[str, Any], arms: Sequence[int]) -> Action:
-    """Picks and places [px]. Raises PlanError if they have another form or number, or a coordinate is not finite.
+    """Picks and places [px], each of shape (arms, 2).
 
     Args:
         content: the answer's object.
         arms: how many picks are allowed.
+
+    Raises:
+        PlanError: if they have another form or number, or a coordinate is not finite.
     """
     counts = " or ".join(str(count) for count in arms)
     form = '{"picks": [{"x": 0, "y": 0}], "places": [{"x": 0, "y": 0}]}'

@@ -10,10 +10,10 @@ from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
 from polyfold.prompts import load_prompt
 from polyfold.types import Action, Reply, Scene, Subgoal
-from polyfold_planning.motions import check_action
+from polyfold_planning.actions import check_action
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import action_in, answer_object, says_done
-from polyfold_planning.scenes import shown_values
+from polyfold_planning.scene_prompts import prompt_inputs
 
 
 class ZeroShotVLM:
@@ -65,7 +65,7 @@ class ZeroShotVLM:
         if len(self._done) >= self._config.max_folds:
             return None
         prompt = load_prompt("zero_shot", self._config.prompt)
-        values = shown_values(scene, prompt, instruction=subgoal.text, folds=self._done, size=_size(scene))
+        values = prompt_inputs(scene, prompt, instruction=subgoal.text, folds=self._done, size=_size(scene))
         attempts = self._config.max_attempts or prompt.max_attempts
         action = ask_until_valid(prompt, values, read, conversation, self._config.params, attempts)
         if action is not None:

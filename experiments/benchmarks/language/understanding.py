@@ -96,7 +96,7 @@ def plan_ideally(text: str, laid: Laid, planner: Planner, llm: Any) -> list[Fold
 
 
 def folded_states(particles: NDArray[np.float64], lines: Sequence[FoldLine]) -> list[NDArray[np.float64]]:
-    """Particles [px] before the first and after each fold."""
+    """Particles [px], shape (N, 2), before the first and after each fold."""
     states = [particles]
     for line in lines:
         now = states[-1]

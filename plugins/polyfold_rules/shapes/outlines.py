@@ -205,6 +205,9 @@ def pockets(framed: Floats) -> list[tuple[int, int, int, float]]:
     """Concave stretches of a polygon: index of the deepest corner, of the hull corners around it, and its depth [px].
 
     The hull corners are given in the order of the polygon.
+
+    Args:
+        framed: the polygon's corners [px], shape (N, 2).
     """
     count = len(framed)
     hull = _hull_indices(framed)

@@ -112,7 +112,12 @@ def _unfolded(points: Mapping[str, Point], layers: Mapping[str, list[int]], fold
 
 
 def edge_vertices(points: Mapping[str, Point], edge: str) -> list[str]:
-    """Names of the vertices that bound an edge, in a fixed order; sleeves and inner legs do not count."""
+    """Names of the vertices that bound an edge, in a fixed order; sleeves and inner legs do not count.
+
+    Args:
+        points: name -> position [px], shape (2,).
+        edge: ``left``, ``right``, ``top`` or ``bottom``.
+    """
     names = [name for name in points if not _CREASE.fullmatch(name)]
     if edge in ("left", "right"):
         return [n for n in names if n.endswith(f"_{edge}") and not n.startswith("sleeve")]

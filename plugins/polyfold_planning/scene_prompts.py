@@ -9,7 +9,7 @@ from polyfold.prompts import Prompt, load_prompt
 from polyfold.types import Scene
 
 
-def prompt_about(scene: Scene, role: str, version: str) -> Prompt:
+def prompt_for(scene: Scene, role: str, version: str) -> Prompt:
     """The prompt of a role for what the scene shows: ``v1`` for a polygon, else ``keypoints-image-v1`` and the like.
 
     Raises:
@@ -20,7 +20,7 @@ def prompt_about(scene: Scene, role: str, version: str) -> Prompt:
     return load_prompt(role, f"{'-'.join(scene.shown)}-{version}")
 
 
-def shown_values(scene: Scene, prompt: Prompt, **more: Any) -> dict[str, Any]:
+def prompt_inputs(scene: Scene, prompt: Prompt, **more: Any) -> dict[str, Any]:
     """Inputs for a prompt: the scene's text as ``model``, its picture as ``picture``, whichever it takes, and ``more``.
 
     Raises:
