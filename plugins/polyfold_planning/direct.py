@@ -13,7 +13,7 @@ from polyfold_planning.actions import check_action
 from polyfold_planning.decomposition import DecompositionConfig, decompose
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import action_in, answer_object
-from polyfold_planning.scene_prompts import prompt_for, prompt_inputs
+from polyfold_planning.scene_prompts import prompt_for, prompt_inputs, prompts_for_scenes
 
 
 class _Direct:
@@ -29,6 +29,11 @@ class _Direct:
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
+
+    @classmethod
+    def prompts_read(cls, config: Config) -> list[str]:
+        """The prompts that it may use with these parameters, each as ``role@version``."""
+        return [f"subgoals@{config.subgoals_prompt}", *prompts_for_scenes(cls.role, config.motion_prompt)]
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""

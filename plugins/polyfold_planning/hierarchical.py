@@ -9,12 +9,11 @@ from polyfold.errors import PlanError
 from polyfold.geometry import FoldLine, signed_distance
 from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
-from polyfold.prompts import load_prompt
 from polyfold.types import Reply, Scene, Subgoal
 from polyfold_planning.decomposition import DecompositionConfig, decompose
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import answer_object, fold_line_in
-from polyfold_planning.scene_prompts import prompt_for, prompt_inputs
+from polyfold_planning.scene_prompts import prompt_for, prompt_inputs, prompts_for_scenes
 
 MIN_LENGTH = 10.0
 """Shortest fold line with a trustworthy direction [px]."""
@@ -34,12 +33,10 @@ class HierarchicalPlanner:
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
 
-    @property
-    def prompts(self) -> dict[str, str]:
-        """Prompt ``id@version`` -> sha256, for logs."""
-        roles = {"subgoals": self._config.subgoals_prompt, "fold_line": self._config.fold_line_prompt}
-        prompts = [load_prompt(role, version) for role, version in roles.items()]
-        return {prompt.name: prompt.sha256 for prompt in prompts}
+    @classmethod
+    def prompts_read(cls, config: Config) -> list[str]:
+        """The prompts that it may use with these parameters, each as ``role@version``."""
+        return [f"subgoals@{config.subgoals_prompt}", *prompts_for_scenes("fold_line", config.fold_line_prompt)]
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from polyfold.errors import ConfigError
-from polyfold.prompts import Prompt, load_prompt
+from polyfold.prompts import Prompt, load_prompt, prompt_names
 from polyfold.types import Scene
 
 
@@ -18,6 +18,12 @@ def prompt_for(scene: Scene, role: str, version: str) -> Prompt:
     if scene.shown == ("polygon",):
         return load_prompt(role, version)
     return load_prompt(role, f"{'-'.join(scene.shown)}-{version}")
+
+
+def prompts_for_scenes(role: str, version: str) -> list[str]:
+    """What :func:`prompt_for` may choose, whatever a scene shows, each as ``role@version``."""
+    found = [name.partition("@")[2] for name in prompt_names() if name.startswith(f"{role}@")]
+    return [f"{role}@{name}" for name in found if name == version or name.endswith(f"-{version}")]
 
 
 def prompt_inputs(scene: Scene, prompt: Prompt, **more: Any) -> dict[str, Any]:

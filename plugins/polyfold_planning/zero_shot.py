@@ -41,6 +41,11 @@ class ZeroShotVLM:
         self._config = config or self.Config()
         self._done: list[dict[str, Any]] = []
 
+    @classmethod
+    def prompts_read(cls, config: Config) -> list[str]:
+        """The prompt that it uses with these parameters, as ``role@version``."""
+        return [f"zero_shot@{config.prompt}"]
+
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """The instruction as it is."""
         self._done = []
