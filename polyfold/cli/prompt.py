@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     for message in entry.messages:
         print(f"--- {message['role']}\n{_text(message)}\n")
-    print(f"--- {tokens} tokens ({how}), parameters {json.dumps(entry['params'])}")
+    print(f"--- {tokens} tokens ({how}), parameters {json.dumps(entry.params)}")
     return 0
 
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from polyfold_rules.words.frames import Frame
-from polyfold_rules.words.lookahead import order_list, verb_ahead
+from polyfold_rules.frames.lookahead import order_list, verb_ahead
+from polyfold_rules.frames.open_clause import OpenClause
 from polyfold_rules.words.phrases import starts_noun_phrase
 from polyfold_rules.words.tokens import Token
 
@@ -13,20 +11,8 @@ SUMMED_UP = ("block", "rectangle", "square", "strip", "store", "tidy", "envelope
 """Goals that take several folds."""
 
 
-class SmallWords:
-    """The handlers of little words; :mod:`polyfold_llms.folding.assembly` keeps the state and ends clauses."""
-
-    tokens: Sequence[Token]
-    frame: Frame
-    role: str
-    purpose: bool
-    joined: bool
-    skip_to: int
-    steps: int | None
-    passed: list[str]
-
-    def _close(self, order: str = "then") -> None:
-        raise NotImplementedError
+class SmallWords(OpenClause):
+    """The handlers of little words."""
 
     def _on_again(self, token: Token, at: int) -> None:
         if token.value == "same" and self.frame.specific and not (self.frame.verbs or self.frame.placed):

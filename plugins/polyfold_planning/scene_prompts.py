@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from polyfold.errors import ConfigError
-from polyfold.prompts import Prompt, load_prompt
+from polyfold.prompts import Prompt, load_prompt, prompt_names
 from polyfold.types import Scene
 
-__all__ = ["prompt_about", "shown_values"]
 
-
-def prompt_about(scene: Scene, role: str, version: str) -> Prompt:
+def prompt_for(scene: Scene, role: str, version: str) -> Prompt:
     """The prompt of a role for what the scene shows: ``v1`` for a polygon, else ``keypoints-image-v1`` and the like.
 
     Raises:
@@ -22,7 +20,13 @@ def prompt_about(scene: Scene, role: str, version: str) -> Prompt:
     return load_prompt(role, f"{'-'.join(scene.shown)}-{version}")
 
 
-def shown_values(scene: Scene, prompt: Prompt, **more: Any) -> dict[str, Any]:
+def prompts_for_scenes(role: str, version: str) -> list[str]:
+    """What :func:`prompt_for` may choose, whatever a scene shows, each as ``role@version``."""
+    found = [name.partition("@")[2] for name in prompt_names() if name.startswith(f"{role}@")]
+    return [f"{role}@{name}" for name in found if name == version or name.endswith(f"-{version}")]
+
+
+def prompt_inputs(scene: Scene, prompt: Prompt, **more: Any) -> dict[str, Any]:
     """Inputs for a prompt: the scene's text as ``model``, its picture as ``picture``, whichever it takes, and ``more``.
 
     Raises:

@@ -1,6 +1,6 @@
-"""Keys and other secrets: found in the environment, scrubbed from every text that leaves a backend.
+"""Keys and other secrets: found in the environment, redacted from every text that leaves a backend.
 
-Nothing here keeps a key: the environment is read when a text is scrubbed or a call is made.
+Nothing here keeps a key: the environment is read when a text is redacted or a call is made.
 """
 
 from __future__ import annotations
@@ -9,8 +9,6 @@ import logging
 import os
 import re
 from typing import Any
-
-__all__ = ["contains_secret", "hide_in_logs", "scrub", "scrubbed"]
 
 HIDDEN = "[hidden]"
 
@@ -28,7 +26,7 @@ _PATTERNS = re.compile(
 )
 
 
-def scrub(text: str) -> str:
+def redact(text: str) -> str:
     """The text without the secrets of this process's environment and without what looks like a key."""
     for secret in _secrets():
         text = text.replace(secret, HIDDEN)
@@ -37,33 +35,33 @@ def scrub(text: str) -> str:
     return _PATTERNS.sub(HIDDEN, text)
 
 
-def scrubbed(value: Any) -> Any:
-    """Plain data with every string in it scrubbed, the keys of mappings too."""
+def redacted(value: Any) -> Any:
+    """Plain data with every string in it redacted, the keys of mappings too."""
     if isinstance(value, str):
-        return scrub(value)
+        return redact(value)
     if isinstance(value, dict):
-        return {scrubbed(key): scrubbed(content) for key, content in value.items()}
+        return {redacted(key): redacted(content) for key, content in value.items()}
     if isinstance(value, (list, tuple)):
-        return [scrubbed(content) for content in value]
+        return [redacted(content) for content in value]
     return value
 
 
 def contains_secret(text: str) -> bool:
     """Whether a secret of the environment, or what looks like a key, stands in the text."""
-    return scrub(text) != text
+    return redact(text) != text
 
 
-def hide_in_logs(*names: str) -> None:
+def redact_logs(*names: str) -> None:
     """Scrub what the named loggers say."""
     for name in names:
         logger = logging.getLogger(name)
-        if not any(isinstance(known, _Scrubber) for known in logger.filters):
-            logger.addFilter(_Scrubber())
+        if not any(isinstance(known, _Redactor) for known in logger.filters):
+            logger.addFilter(_Redactor())
 
 
-class _Scrubber(logging.Filter):
+class _Redactor(logging.Filter):
     def filter(self, record: logging.LogRecord) -> bool:
-        record.msg, record.args = scrub(record.getMessage()), None
+        record.msg, record.args = redact(record.getMessage()), None
         # The traceback and the error's own text may hold what the provider echoed.
         record.exc_info = record.exc_text = record.stack_info = None
         return True

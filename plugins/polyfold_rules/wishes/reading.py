@@ -10,10 +10,13 @@ import re
 from functools import cache
 from importlib.resources import files
 
+from polyfold_rules.wishes.manners import ASIDES, MANNERS
+from polyfold_rules.wishes.part_idioms import PART_IDIOMS
+from polyfold_rules.wishes.parts import PARTS
+from polyfold_rules.wishes.readers import Reader
+from polyfold_rules.wishes.size_idioms import SIZE_IDIOMS
+from polyfold_rules.wishes.sizes import SIZES
 from polyfold_rules.wishes.wish import Wish
-from polyfold_rules.wishes.wish_idioms import IDIOMS
-from polyfold_rules.wishes.wish_parts import PARTS
-from polyfold_rules.wishes.wish_sizes import SIZES, Reader
 from polyfold_rules.words.lexicon import fillers, phrases
 from polyfold_rules.words.spelling import NUMBERS, plainest
 
@@ -208,7 +211,7 @@ def _means_something(word: str) -> bool:
 
 @cache
 def _vocabulary() -> dict[str, frozenset[str]]:
-    table, _, filler = files(__package__).joinpath("wishes.txt").read_text("utf-8").partition("\nfiller:\n")
+    table, _, filler = files("polyfold_rules.wishes").joinpath("wishes.txt").read_text("utf-8").partition("\nfiller:\n")
     words: dict[str, frozenset[str]] = {"filler": frozenset(filler.split())}
     for line in table.splitlines():
         head, _, rest = line.partition(":")
@@ -227,7 +230,8 @@ def _rule_at(words: str, at: int, folds_named: bool = False) -> tuple[Reader, re
 
 @cache
 def _rules(folds_named: bool) -> list[tuple[re.Pattern[str], Reader]]:
-    patterns = (IDIOMS if folds_named else []) + SIZES + PARTS
+    idioms = SIZE_IDIOMS + PART_IDIOMS + MANNERS + ASIDES if folds_named else []
+    patterns = idioms + SIZES + PARTS
     known = [(_any_of(head, words), _known(*head.split())) for head, words in _vocabulary().items() if head != "filler"]
     return known + [(re.compile(pattern + r"\b"), rule) for pattern, rule in patterns]
 

@@ -1,4 +1,4 @@
-"""Transport: which faults are worth another try, how long to wait for it, and how many calls may be under way.
+"""Retries: which faults are worth another try, how long to wait for it, and how many calls may be under way.
 
 ==============================================  ===============================================================
 what comes back                                 what is done
@@ -19,7 +19,7 @@ body cut short
 200, NaN, infinity, outside the image           an invalid answer: repair loop
 ==============================================  ===============================================================
 
-A wait is what ``Retry-After`` says, at most 60 s; else it doubles from 1 s, with jitter. Meanwhile no slot is held.
+A wait is what ``Retry-After`` says, at most 60 s; else it doubles from 1 s, with jitter. It holds no semaphore.
 """
 
 from __future__ import annotations
@@ -28,21 +28,19 @@ import random
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from email.utils import parsedate_to_datetime
 from typing import Any, Generic, TypeVar
 
 from polyfold.errors import LLMAccessError, LLMError
 
-__all__ = ["Answer", "Patience", "TransportError", "call", "header", "slot"]
-
 Result = TypeVar("Result")
 
-AGAIN = frozenset({408, 409, 425, 429})
-ACCESS = frozenset({401, 402, 403, 404})
-NO_CREDIT = ("insufficient_quota", "exceeded your current quota", "insufficient credits", "credit balance is too low")
+_RETRYABLE = frozenset({408, 409, 425, 429})
+_ACCESS = frozenset({401, 402, 403, 404})
+_NO_CREDIT = ("insufficient_quota", "exceeded your current quota", "insufficient credits", "credit balance is too low")
 
 
 class TransportError(Exception):
@@ -61,61 +59,75 @@ class TransportError(Exception):
         self.retry_after = retry_after
 
     @property
-    def access(self) -> bool:
+    def access_denied(self) -> bool:
         """Whether no call can succeed until a person acts."""
-        no_credit = self.status in (402, 403, 429) and any(word in self.text.lower() for word in NO_CREDIT)
-        return no_credit or self.status in ACCESS
+        no_credit = self.status in (402, 403, 429) and any(word in self.text.lower() for word in _NO_CREDIT)
+        return no_credit or self.status in _ACCESS
 
     @property
-    def again(self) -> bool:
+    def retryable(self) -> bool:
         """Whether another try may help."""
-        if self.access:
+        if self.access_denied:
             return False
-        return self.status is None or self.status < 400 or self.status >= 500 or self.status in AGAIN
+        return self.status is None or self.status < 400 or self.status >= 500 or self.status in _RETRYABLE
 
 
 @dataclass(frozen=True)
-class Patience:
-    """How often to try and how long to wait [s]."""
+class RetryPolicy:
+    """How often to try a call and how long to wait in between.
 
-    tries: int = 4
-    first_wait: float = 1.0
-    longest_wait: float = 60.0
+    Attributes:
+        max_attempts: tries, the first one counted.
+        first_wait_s: wait before the second try [s]; it doubles from there, with jitter.
+        longest_wait_s: longest wait [s], those that a provider asks for included.
+    """
 
-    def wait(self, failed: int, fault: TransportError) -> float:
-        """Seconds to wait after the ``failed``-th failed try."""
-        asked = _seconds(fault.retry_after)
+    max_attempts: int = 4
+    first_wait_s: float = 1.0
+    longest_wait_s: float = 60.0
+
+    def wait_s(self, failed: int, fault: TransportError) -> float:
+        """How long to wait after the ``failed``-th failed try [s]."""
+        asked = _retry_after_s(fault.retry_after)
         if asked is None:
-            asked = self.first_wait * 2 ** (failed - 1) * random.uniform(0.5, 1.5)
-        return min(asked, self.longest_wait)
+            asked = self.first_wait_s * 2 ** (failed - 1) * random.uniform(0.5, 1.5)
+        return min(asked, self.longest_wait_s)
 
 
 @dataclass(frozen=True)
-class Answer(Generic[Result]):
-    """What a call brought: the result, tries, seconds of the successful one and of all, and a line per fault."""
+class CallResult(Generic[Result]):
+    """What a call brought in the end.
+
+    Attributes:
+        result: what the successful try returned.
+        attempts: tries, the successful one counted.
+        latency_s: duration of the successful try [s].
+        wall_s: duration of all, waits included [s].
+        faults: a line for each failed try.
+    """
 
     result: Result
-    tries: int
+    attempts: int
     latency_s: float
     wall_s: float
     faults: tuple[str, ...]
 
 
-def call(
+def call_with_retries(
     attempt: Callable[[], Result],
-    patience: Patience,
+    policy: RetryPolicy,
     what: str,
-    place: Callable[[], AbstractContextManager[None]] = nullcontext,
+    semaphore: threading.Semaphore | None = None,
     sleep: Callable[[float], None] = time.sleep,
-) -> Answer[Result]:
+) -> CallResult[Result]:
     """Make a call, again where that may help.
 
     Args:
         attempt: makes one try; raises TransportError.
-        patience: how often and how long.
+        policy: how often and how long.
         what: names the model in errors.
-        place: is held during a try; waiting for it counts as waiting, not as latency.
-        sleep: waits.
+        semaphore: is held during a try; waiting for it counts as waiting, not as latency.
+        sleep: waits [s].
 
     Raises:
         LLMAccessError: if a person must act first.
@@ -124,30 +136,33 @@ def call(
     began = time.perf_counter()
     faults: list[str] = []
     while True:
-        fault = None
-        with place():
+        with semaphore or nullcontext():
             clock = time.perf_counter()
-            try:
-                result = attempt()
-            except TransportError as caught:
-                fault = caught
+            result = _tried(attempt)
             now = time.perf_counter()
-        if fault is None:
-            return Answer(result, len(faults) + 1, now - clock, now - began, tuple(faults))
-        faults.append(fault.text)
-        # Raised here and not in the handler, so that no error holds what the provider sent.
-        if fault.access:
-            raise LLMAccessError(f"{what} can't be used: {fault.text}; {_remedy(fault)}")
-        if not fault.again:
-            raise LLMError(f"{what} refused the request: {fault.text}; change the prompt, its parameters or the model")
-        if len(faults) >= patience.tries:
+        if not isinstance(result, TransportError):
+            return CallResult(result, len(faults) + 1, now - clock, now - began, tuple(faults))
+        faults.append(result.text)
+        # Raised here and not where it was caught, so that no error holds what the provider sent.
+        if result.access_denied:
+            raise LLMAccessError(f"{what} can't be used: {result.text}; {_remedy(result)}")
+        if not result.retryable:
+            raise LLMError(f"{what} refused the request: {result.text}; change the prompt, its parameters or the model")
+        if len(faults) >= policy.max_attempts:
             raise LLMError(
                 f"{what} gave no answer in {len(faults)} tries: {_in_short(faults)}; check the server and the network, "
                 "try again later, or choose another model"
             )
-        pause = patience.wait(len(faults), fault)
+        pause = policy.wait_s(len(faults), result)
         faults[-1] += f" (waited {pause:.2g} s)"
         sleep(pause)
+
+
+def _tried(attempt: Callable[[], Result]) -> Result | TransportError:
+    try:
+        return attempt()
+    except TransportError as fault:
+        return fault
 
 
 def _in_short(faults: Sequence[str]) -> str:
@@ -166,7 +181,7 @@ def _remedy(fault: TransportError) -> str:
     return "check credit and limits with the provider"
 
 
-def _seconds(header: str | None) -> float | None:
+def _retry_after_s(header: str | None) -> float | None:
     """A ``Retry-After`` header in seconds: a number or a date; None if there is none or it is neither."""
     if not header:
         return None
@@ -180,20 +195,22 @@ def _seconds(header: str | None) -> float | None:
         return None
 
 
-_slots: dict[tuple[str, int], threading.BoundedSemaphore] = {}
-_slots_lock = threading.Lock()
+_semaphores: dict[tuple[str, int], threading.BoundedSemaphore] = {}
+_semaphores_lock = threading.Lock()
 
 
-@contextmanager
-def slot(server: str, limit: int) -> Iterator[None]:
-    """One of ``limit`` places for calls to a server, shared by everything in this process."""
-    with _slots_lock:
-        places = _slots.setdefault((server, limit), threading.BoundedSemaphore(limit))
-    with places:
-        yield
+def server_semaphore(server: str, limit: int) -> threading.BoundedSemaphore:
+    """The semaphore for calls to a server, one per process and limit.
+
+    Args:
+        server: address or provider.
+        limit: calls that may be under way at once.
+    """
+    with _semaphores_lock:
+        return _semaphores.setdefault((server, limit), threading.BoundedSemaphore(limit))
 
 
-def header(headers: Mapping[str, Any] | None, name: str) -> str | None:
+def header_value(headers: Mapping[str, Any] | None, name: str) -> str | None:
     """A header's value, whatever the case of its name."""
     found = {str(key).lower(): str(value) for key, value in (headers or {}).items()}
     return found.get(name.lower())

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from polyfold_rules.words.frames import Frame
-from polyfold_rules.words.lookahead import clause_ends, order_list
+from polyfold_rules.frames.frame import Frame
+from polyfold_rules.frames.lookahead import clause_ends, order_list
+from polyfold_rules.frames.open_clause import OpenClause
 from polyfold_rules.words.phrases import starts_noun_phrase
-from polyfold_rules.words.smallwords import SmallWords
 from polyfold_rules.words.tokens import Token
 
 
-class OrderWords(SmallWords):
-    """The handlers of order words; :mod:`polyfold_llms.folding.assembly` keeps the state and ends clauses."""
-
-    done: list[tuple[str, Frame]]
-    order: str
-    sentence_start: int
-    contrasted: bool
-    _named_last: bool
+class OrderWords(OpenClause):
+    """The handlers of order words."""
 
     def _on_seq(self, token: Token, at: int) -> None:
         at_start = self.frame.empty and len(self.done) == self.sentence_start

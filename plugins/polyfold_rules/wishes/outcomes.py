@@ -16,8 +16,8 @@ from polyfold.polygon import FoldedModel
 from polyfold_rules.shapes.creases import crease_of
 from polyfold_rules.shapes.folds import Fold
 from polyfold_rules.shapes.parts import NotUnderstoodError
-from polyfold_rules.shapes.sequences import sequences
 from polyfold_rules.shapes.shape import Shape
+from polyfold_rules.wishes.sequences import sequences
 
 Point = NDArray[np.float64]
 

@@ -8,127 +8,47 @@ from __future__ import annotations
 
 import re
 
-_SIDE = r"(?:top|bottom|upper|lower|left|right)(?:-hand)?"
-_SIDES = rf"{_SIDE}(?:[ -]{_SIDE})?"
-_NOUN = r"(?:corner|edge|side|half|leg|sleeve|border)"
-_BORDER = r"(?:edge|side|border)s?"
-_FOLDED = (
-    r"(?:folded|brought|laid|placed|carried|raised|lowered|moved|superimposed|taken|turned|put|reflected|mirrored)"
+from polyfold_rules.words.geometric_terms import (
+    ACROSS,
+    AXIS,
+    BORDER,
+    FINITE,
+    FOLDED,
+    LINE,
+    MIDPOINTS,
+    NOUN,
+    SIDE,
+    SIDES,
+    plain_terms,
 )
-_FINITE = r"(?:shall be|is to be|are to be|is|are|shall|should be|must be|being)"
-_LINE = r"(?:line|segment|straight line|line segment|crease|fold line)"
-_JOINING = r"(?:joining|connecting|linking|through|between|that joins|that connects|passing through|running through)"
-_MIDPOINTS = rf"(?:{_JOINING} )(?:the )?mid-?points of (?:the |its |both )?"
-_AXIS = (
-    r"(?:central |middle )?(?:axis(?: of symmetry)?|line of symmetry|symmetry axis|midline|mid-line|"
-    r"cent(?:re|er) ?line|middle line|middle)"
-)
-_ACROSS = r"(?:across|about|over|in|along|through|around)"
-_WHEREUPON = r"(?:whereupon|following which|following that|after which|subsequent to which|whereafter)"
-_WHOLE = r"(?:it|the (?:cloth|fabric|garment|shirt|square|rectangle))"
-
-_WORDS: tuple[tuple[str, str], ...] = (
-    (r"\bvertices\b|\bapices\b|\bapexes\b", "corners"),
-    (r"\b(its|their) (?:vertex|corner|corners|apex)\b(?! onto| to\b)", r"\1 tip"),
-    (r"\b(?:vertex|apex)\b", "corner"),
-    (r"\bcentre of symmetry\b|\bcenter of symmetry\b", "centre"),
-    (r"\b(vertical|horizontal) (?:bisector|mid-?axis|symmetry axis)\b", r"\1 midline"),
-    (r"\b(?:isosceles|right-angled|congruent (?=halves|parts|halfs))\b ?", ""),
-    (rf"\b{_WHEREUPON},? (?=(?:it|they|both) )", "so that "),
-    (rf",? ?\b{_WHEREUPON}\b,?", ", then"),
-    (r",? (?:whereby|thereby|thus) (?:the [a-z]+|it) (?:is|being) (?:halved|bisected)(?=[.;]|$)", ""),
-    (r",? \bwhereby\b", " so that"),
-    (r"\byielding\b", "forming"),
-    (r"\b(?:its|the) antipode\b|\bthe antipodal corner\b", "the opposite corner"),
-    (
-        rf"\b({_NOUN}s?) (?:(?:that|which) (?:is|are) )?(?:situated|located|positioned|lying|found) "
-        r"(?=(?:at|in|on) the )",
-        r"\1 ",
-    ),
-    (r"\b(line|axis|segment) (?:(?:that|which) is )?(?:defined|determined|given|spanned) by\b", "line joining"),
-    (r"\b(?:is|are) congruent (?:with|to)\b", "coincides with"),
-    (r"\b(half|edge|side|corner|leg) (?:beneath|underneath|below)(?=[.,;]|$)", r"\1"),
-    (r"\btranslated?\b (?=(?:the |both |each |to |onto |on |into |so |such |inward))", "move "),
-    (r"\b(?:to be )?made to coincide with\b", "to be folded onto"),
-    (r"\babut (?:along|at|on|upon)\b", "meet at"),
-    (
-        r"\b(?:the |that )?(?:point|place)? ?(?:where|at which|in which) both diagonals (?:intersect|meet|cross)\b",
-        "the centre",
-    ),
-    (r"\bpoint of intersection of (?:the|its|both|the two|its two) diagonals\b", "centre"),
-    (r",? \b(?:creasing|folding) the (?:cloth|fabric|garment) accordingly\b", ""),
-    (rf",? (?:thereby |thus )?(?:bisecting|halving) {_WHOLE}(?=[.;]|$)", ""),
-    (rf", (?:a|one) (?:quarter|half) of {_WHOLE} being folded (?:over|in|inward)(?=[.;]|$)", ""),
-    (
-        r", (?:each|the|both) creases? (?:joining|connecting) the mid-?points of "
-        r"(?:two |the )?(?:neighbouring|adjacent) sides",
-        "",
-    ),
-    (
-        r"\b(?:halved|bisected) (?:along|about|across) its "
-        r"(?:altitude|height|median|bisector|(?:axis|line) of symmetry)\b",
-        "halved",
-    ),
-    (r"\bin the same (?:direction|sense) (once more|once again|again)\b", r"\1"),
-    (
-        r",? and (?:the|this) (?:result|strip|package|resulting [a-z]+) is (?:halved|folded in half) "
-        r"(?:once more|once again|again)(?: in the same (?:direction|manner|sense|way))?",
-        ". then fold it in half again",
-    ),
-    (
-        r"\bis (?:treated|handled|folded) (?:symmetrically|likewise|correspondingly|analogously)\b",
-        "is folded the same way",
-    ),
-)
-_STEPS: tuple[tuple[str, str], ...] = (
-    (r"\b(?:both |the |two )*(?:the )?horizontal (edges|sides|borders)\b", r"the top and bottom \1"),
-    (r"\b(?:both |the |two )*(?:the )?(?:vertical|lateral) (edges|sides|borders)\b", r"the left and right \1"),
-    (
-        r"\bthe (?:two )?legs (?:are|shall be|are to be) (?:superimposed|folded|laid|placed)"
-        r"(?: on each other| together)?, "
-        r"the (left|right)(?: leg)? (?:upon|on|onto|over) the (?:left|right)\b",
-        r"the \1 leg is folded onto the other leg",
-    ),
-    (r",? ?\b(?:in succession|successively)\b|\bsuccessive (?=[a-z]+ folds)", ""),
-    (rf"\b(?:in|of|at) the ({_SIDES}) quadrant\b", r"at the \1"),
-    (r"\b(?:to be )?(?:made|rendered) coincident with\b", "to be folded onto"),
-    (rf", the ({_SIDES})(?: {_NOUN})? preceding the {_SIDES}(?: {_NOUN})?(?=[.;]|$)", r", the \1 one first"),
-    (
-        rf"\bthe [a-z]+ {_FINITE} (?:then |subsequently |thereafter )?(?:divided|folded) into thirds, "
-        rf"(?=the {_SIDE} third)",
-        "then ",
-    ),
-    (r"\bthird being (?=folded)", "third is "),
-)
-_RULES = tuple((re.compile(pattern), plain) for pattern, plain in (*_WORDS, *_STEPS))
 
 _OF_EDGE = re.compile(
     r"\b(?:both |the |two |both the )*corners (?:of|delimiting|bounding|adjacent to|incident to|lying on|"
     rf"at|on|along|at the ends of) the "
-    rf"(?P<side>{_SIDE}) "
+    rf"(?P<side>{SIDE}) "
     r"(?:edge|side|border)\b"
 )
-_NAMELY = re.compile(rf"\bthe corners [^,.;]*, namely (?P<which>{_SIDES}(?:,? and (?:the )?{_SIDES})),")
+_NAMELY = re.compile(rf"\bthe corners [^,.;]*, namely (?P<which>{SIDES}(?:,? and (?:the )?{SIDES})),")
 _MIDLINE = re.compile(
-    rf"\b(?:(?:the|a) {_LINE} )?(?P<begin>{_MIDPOINTS})"
-    rf"(?P<which>(?:{_SIDE}) and (?:the )?(?:{_SIDE})|lateral|vertical|horizontal) {_BORDER}\b"
+    rf"\b(?:(?:the|a) {LINE} )?(?P<begin>{MIDPOINTS})"
+    rf"(?P<which>(?:{SIDE}) and (?:the )?(?:{SIDE})|lateral|vertical|horizontal) {BORDER}\b"
 )
 _BISECTOR = re.compile(
     rf"\b(?:perpendicular )?bisector of (?:the |both |its )"
-    rf"(?P<which>{_SIDE}(?: and (?:the )?{_SIDE})?|lateral) {_BORDER}"
+    rf"(?P<which>{SIDE}(?: and (?:the )?{SIDE})?|lateral) {BORDER}"
 )
 _ENDS = {frozenset(("left", "right")): "horizontal", frozenset(("top", "bottom")): "vertical"}
 _LATERAL = {"lateral": "horizontal", "vertical": "horizontal", "horizontal": "vertical"}
 _SAME = {"upper": "top", "lower": "bottom", "left-hand": "left", "right-hand": "right"}
 
 _CUT_CORNER = re.compile(
-    rf"\b(?:the (?:cloth|fabric|square|napkin) {_FINITE} )?(?:fold|folded|crease|creased)(?: it| the cloth)? along the "
-    rf"{_LINE} {_MIDPOINTS}(?P<first>{_SIDE}) and (?:the )?(?P<second>{_SIDE}) {_BORDER}"
+    rf"\b(?:the (?:cloth|fabric|square|napkin) {FINITE} )?(?:fold|folded|crease|creased)(?: it| the cloth)? along the "
+    rf"{LINE} {MIDPOINTS}(?P<first>{SIDE}) and (?:the )?(?P<second>{SIDE}) {BORDER}"
     r"(?:, the corner (?:thereby )?(?:coming to (?:rest|lie)|landing) (?:on|at|in) the cent(?:re|er))?"
 )
 _REFLECTED = re.compile(
-    rf"\b(?P<verb>reflect|mirror)(?P<form>ed)?\b(?P<between>[^.;,]*?) {_ACROSS} (?:the |its )"
-    rf"(?P<way>(?:vertical|horizontal) )?{_AXIS}"
+    rf"\b(?P<verb>reflect|mirror)(?P<form>ed)?\b(?P<between>[^.;,]*?) {ACROSS} (?:the |its )"
+    rf"(?P<way>(?:vertical|horizontal) )?{AXIS}"
     r"(?: of (?:the|its) (?:cloth|shirt|garment|rectangle|square|trousers|pants))?"
     r"(?= ?[.,;]| so that| such that| and| until|$)"
 )
@@ -138,51 +58,51 @@ _NEXT = re.compile(
 """Where the next step of a sentence begins."""
 _KNOWN_END = re.compile(r"\b(?:hem|waist|waistband|cuffs|leg ends)\b")
 _ACROSS_DIAGONAL = re.compile(
-    rf"\b(?P<verb>reflect|mirror)(?P<form>ed)? (?P<between>[^.;,]*?){_ACROSS} (?:the|its)(?: opposite| other)? diagonal"
+    rf"\b(?P<verb>reflect|mirror)(?P<form>ed)? (?P<between>[^.;,]*?){ACROSS} (?:the|its)(?: opposite| other)? diagonal"
     r"(?: (?:joining|connecting|that joins|that connects) the other two (?:[a-z]+ )?corners)?"
     r"(?= ?[.,;]| so that| such that|$)"
 )
-_BY_REFLECTION = re.compile(rf"\bby (?:a )?(?:reflection|mirroring) {_ACROSS} [^,;.]*, ")
+_BY_REFLECTION = re.compile(rf"\bby (?:a )?(?:reflection|mirroring) {ACROSS} [^,;.]*, ")
 _ABSOLUTE = re.compile(
-    rf"\b(?P<head>(?:(?:and )?the resulting [a-z]+ {_FINITE} (?:then |subsequently |thereafter |now "
+    rf"\b(?P<head>(?:(?:and )?the resulting [a-z]+ {FINITE} (?:then |subsequently |thereafter |now "
     r")?(?:halved|bisected))"
     r"|the (?:cloth|fabric|square|napkin) [a-z ]*? (?:about|across|along) (?:the|its) (?:rising "
     r"|falling |other )?diagonal)"
-    rf", (?P<part>(?:the|its) {_SIDES} {_NOUN}) (?:thereby |thus )?"
-    rf"(?:being {_FOLDED}|landing|coming to (?:rest|lie)) (?P<place>(?:to|onto|on|upon|over) )"
+    rf", (?P<part>(?:the|its) {SIDES} {NOUN}) (?:thereby |thus )?"
+    rf"(?:being {FOLDED}|landing|coming to (?:rest|lie)) (?P<place>(?:to|onto|on|upon|over) )"
 )
 _BEING = re.compile(
     rf"\b(?P<head>(?:halved|bisected|folded|creased)\b[^.,;]*), (?P<part>(?:the|its|both) [a-z ]{{3,30}}?) being "
-    rf"(?P<does>{_FOLDED} (?:to|onto|on|upon|over)\b)"
+    rf"(?P<does>{FOLDED} (?:to|onto|on|upon|over)\b)"
 )
 """*Bisected, the right half being laid on the left half*: how the fold before it is meant."""
 _CREASE_THEN = re.compile(
     rf"\b(?:crease|fold) (?P<line>(?:along|through|from|at|across|about) [^.;,]*?)"
-    rf"(?:,? and fold| ?, with|,) (?P<part>the {_SIDES} sleeve)(?: being folded)? ?"
+    rf"(?:,? and fold| ?, with|,) (?P<part>the {SIDES} sleeve)(?: being folded)? ?"
     r"(?:over|inward|inwards|in)?(?=[.;,]|$)"
 )
 _CREASE_HALF = re.compile(
-    rf"\b(?:crease|fold) (?:along|through|about|at|across) [^.;,]*midline[^.;,]*, (?P<part>the {_SIDE} half) "
-    rf"being {_FOLDED} (?P<place>(?:to|onto|on|upon|over) the {_SIDE})(?: half)?(?=[.;,]|$)"
+    rf"\b(?:crease|fold) (?:along|through|about|at|across) [^.;,]*midline[^.;,]*, (?P<part>the {SIDE} half) "
+    rf"being {FOLDED} (?P<place>(?:to|onto|on|upon|over) the {SIDE})(?: half)?(?=[.;,]|$)"
 )
-_BOTH = rf"the (?P<{{}}>{_SIDES})(?: {_NOUN})? and (?:the )?(?P<{{}}>{_SIDES}) (?P<{{}}>{_NOUN})s?"
+_BOTH = rf"the (?P<{{}}>{SIDES})(?: {NOUN})? and (?:the )?(?P<{{}}>{SIDES}) (?P<{{}}>{NOUN})s?"
 _RESPECTIVELY = re.compile(
     rf"\b{_BOTH.format('a', 'b', 'noun')} (?P<does>[^.,;]*?)(?:onto|on|to|upon|with) "
     rf"{_BOTH.format('c', 'd', 'place')},? "
     r"respectively(?:,? (?:and )?in (?:that order|this order|the order(?: (?:stated|given|named))?))?"
 )
 _GAPPED = re.compile(
-    rf",? and (?P<part>the {_SIDES} {_NOUN}) (?:then|thereafter|subsequently|afterwards|next),? "
+    rf",? and (?P<part>the {SIDES} {NOUN}) (?:then|thereafter|subsequently|afterwards|next),? "
     r"(?:with|onto|to|on|upon) (?=the )"
 )
 _HAVING = re.compile(
-    rf"\bhaving been (?:folded|creased) (?:such that|so that) its (?P<part>{_SIDES} {_NOUN}) "
-    rf"(?:coincides with|meets|lies on) its (?P<place>{_SIDES} {_NOUN}), the [a-z]+ {_FINITE} (?:folded|creased) "
-    rf"(?:such that|so that) its (?P<then>{_SIDES} {_NOUN}) (?:coincides with|meets|lies on) "
-    rf"its (?P<there>{_SIDES} {_NOUN})"
+    rf"\bhaving been (?:folded|creased) (?:such that|so that) its (?P<part>{SIDES} {NOUN}) "
+    rf"(?:coincides with|meets|lies on) its (?P<place>{SIDES} {NOUN}), the [a-z]+ {FINITE} (?:folded|creased) "
+    rf"(?:such that|so that) its (?P<then>{SIDES} {NOUN}) (?:coincides with|meets|lies on) "
+    rf"its (?P<there>{SIDES} {NOUN})"
 )
 _THIRDS = re.compile(
-    rf"(?:,? and the (?:result|resulting [a-z]+) {_FINITE},? |,? and )?"
+    rf"(?:,? and the (?:result|resulting [a-z]+) {FINITE},? |,? and )?"
     rf"(?:then |subsequently |thereafter )?(?:to be )?folded (?:into|in) (?:three|thirds), "
     r"(?:first|firstly) (?:the )?(?P<first>cuffs|hems|leg ends|waist|waistband|top|bottom) "
     r"(?P<way>up|down)(?:wards?)?,? "
@@ -193,8 +113,7 @@ _ITS_TIP = re.compile(r"\b(?P<verb>folded)[;,] its tip (?:shall|is to|should|mus
 
 def without_geometry(text: str) -> str:
     """The same instruction without the terms of geometry; lower case is expected."""
-    for pattern, plain in _RULES:
-        text = pattern.sub(plain, text)
+    text = plain_terms(text)
     text = _CUT_CORNER.sub(_cut_corner, text)
     text = _MIDLINE.sub(_midline, text)
     text = _BISECTOR.sub(_bisector, text)
@@ -236,7 +155,7 @@ def _midline(found: re.Match[str]) -> str:
 
 def _bisector(found: re.Match[str]) -> str:
     """The perpendicular bisector of an edge runs between the edges beside it."""
-    sides = {_plain_side(side) for side in re.findall(_SIDE, found["which"])}
+    sides = {_plain_side(side) for side in re.findall(SIDE, found["which"])}
     if len(sides & {"left", "right"}) and len(sides & {"top", "bottom"}):
         return found.group(0)
     return "vertical midline" if sides & {"top", "bottom"} else "horizontal midline"
@@ -280,7 +199,7 @@ def _across_diagonal(found: re.Match[str]) -> str:
 
 def _respectively(found: re.Match[str]) -> str:
     noun = found["noun"]
-    pairs = [[{_plain_side(side) for side in re.findall(_SIDE, found[name])} for name in pair] for pair in ("ac", "bd")]
+    pairs = [[{_plain_side(side) for side in re.findall(SIDE, found[name])} for name in pair] for pair in ("ac", "bd")]
     edge = pairs[0][0] & pairs[1][0]
     if noun == "corner" and len(edge) == 1 and all(start - place == edge for start, place in pairs):
         return f"fold the {edge.pop()} edge onto the opposite edge"

@@ -1,4 +1,4 @@
-"""What a request is, to a cassette: plain data, its key, its second key, and how two requests differ, in words."""
+"""What a request is to a cassette: plain data, its key, a key that numbers do not change, and how two differ."""
 
 from __future__ import annotations
 
@@ -13,12 +13,10 @@ from typing import Any
 from polyfold.rollout import without_pictures
 from polyfold.types import Message
 
-__all__ = ["VERSION", "difference", "farthest_numbers", "key_of", "nearby_key_of", "request_of"]
-
-VERSION = 1
+REQUEST_VERSION = 1
 """Of the form of requests; part of every key."""
 
-AROUND = 40
+_AROUND = 40
 """Characters shown on either side of the first difference."""
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
@@ -26,7 +24,7 @@ _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 Request = dict[str, Any]
 
 
-def request_of(model: str, messages: Sequence[Message], params: Mapping[str, Any], sample: int) -> Request:
+def normalized_request(model: str, messages: Sequence[Message], params: Mapping[str, Any], sample: int) -> Request:
     """The request as data: what its key is made of. Pictures stand there as SHA-256 and length.
 
     Args:
@@ -36,7 +34,7 @@ def request_of(model: str, messages: Sequence[Message], params: Mapping[str, Any
         sample: number of this answer among independent ones to the same request.
     """
     return {
-        "v": VERSION,
+        "v": REQUEST_VERSION,
         "model": model,
         "messages": without_pictures(messages),
         "params": dict(params),
@@ -44,13 +42,13 @@ def request_of(model: str, messages: Sequence[Message], params: Mapping[str, Any
     }
 
 
-def key_of(request: Mapping[str, Any]) -> str:
+def request_key(request: Mapping[str, Any]) -> str:
     """SHA-256 of the request's canonical JSON, in hexadecimal."""
     text = json.dumps(request, sort_keys=True, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def nearby_key_of(request: Mapping[str, Any], place: Mapping[str, Any]) -> str | None:
+def nearby_key(request: Mapping[str, Any], place: Mapping[str, Any]) -> str | None:
     """A key that numbers in the conversation do not change, for the same place in the same episode; None without one.
 
     Coordinates come out of the simulation, and another processor may move them by a fraction of a pixel. The system's
@@ -62,10 +60,10 @@ def nearby_key_of(request: Mapping[str, Any], place: Mapping[str, Any]) -> str |
         message if message["role"] == "system" else {**message, "content": _NUMBER.sub("#", _text(message))}
         for message in request["messages"]
     ]
-    return key_of({**request, "messages": blank, "place": dict(place)})
+    return request_key({**request, "messages": blank, "place": dict(place)})
 
 
-def farthest_numbers(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
+def largest_difference(a: Mapping[str, Any], b: Mapping[str, Any]) -> float:
     """Largest difference between the corresponding numbers of two requests with the same nearby key."""
     pairs = zip(_numbers(a), _numbers(b), strict=True)
     return max((abs(x - y) for x, y in pairs), default=0.0)
@@ -82,7 +80,7 @@ def _text(message: Mapping[str, Any]) -> str:
     return content if isinstance(content, str) else json.dumps(content, sort_keys=True, ensure_ascii=False)
 
 
-def difference(recorded: Mapping[str, Any], asked: Mapping[str, Any]) -> str:
+def describe_difference(recorded: Mapping[str, Any], asked: Mapping[str, Any]) -> str:
     """How a request differs from a recorded one, in words: every setting, then the first place in the messages."""
     return "; ".join(_differences(recorded, asked)) or "they do not differ"
 
@@ -109,5 +107,5 @@ def _first_difference(old: str, new: str) -> str:
 
 
 def _around(text: str, at: int) -> str:
-    begin, end = max(0, at - AROUND), at + AROUND
+    begin, end = max(0, at - _AROUND), at + _AROUND
     return f"“{'…' * (begin > 0)}{' '.join(text[begin:end].split())}{'…' * (end < len(text))}”"

@@ -7,8 +7,6 @@ import numpy as np
 from polyfold.errors import PlanError
 from polyfold.types import Action, Scene
 
-__all__ = ["check_action"]
-
 OFF_CLOTH = 4.0
 """A pick this far from the visible cloth [px] still grasps its edge."""
 

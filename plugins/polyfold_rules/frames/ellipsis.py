@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from polyfold_rules.words.frames import Frame
+from polyfold_rules.frames.frame import Frame
 from polyfold_rules.words.phrases import NounPhrase
 
 LINES = ("centre", "midline", "gap")

@@ -8,13 +8,11 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from polyfold_llms.keys import hide_in_logs
-
-__all__ = ["count_tokens", "knows_model", "knows_route", "library", "missing_variables", "sees_pictures"]
+from polyfold_llms.redaction import redact_logs
 
 
 @cache
-def library() -> Any:
+def load_litellm() -> Any:
     """The module litellm. The first call takes 2-4 s.
 
     Without the two variables it looks up a price map on the network (16 s behind a network that swallows packets) and
@@ -25,38 +23,38 @@ def library() -> Any:
     import litellm
 
     litellm.suppress_debug_info = True
-    litellm.telemetry = False
     # The first completion of a process compiles and imports more; a mock one takes that out of the first latency.
     litellm.completion(model="openai/gpt-4o", messages=[{"role": "user", "content": "x"}], mock_response="x")
-    hide_in_logs("LiteLLM", "openai", "openai._base_client", "httpx")
+    redact_logs("LiteLLM", "openai", "openai._base_client", "httpx")
     # Its debug output holds whole headers, as bytes.
     logging.getLogger("httpcore").setLevel(logging.WARNING)
     return litellm
 
 
-def knows_route(route: str) -> bool:
+def has_provider(route: str) -> bool:
     """Whether litellm has a provider of this name."""
-    return route in {str(getattr(provider, "value", provider)) for provider in library().provider_list}
+    return route in {str(getattr(provider, "value", provider)) for provider in load_litellm().provider_list}
 
 
-def knows_model(name: str) -> bool:
+def lists_model(name: str) -> bool:
     """Whether litellm's own table lists the model."""
-    table = library().model_cost
+    table = load_litellm().model_cost
     return name in table or name.partition("/")[2] in table
 
 
-def missing_variables(name: str) -> Sequence[str]:
+def missing_environment(name: str) -> Sequence[str]:
     """Environment variables that litellm says a model needs and that are not set."""
-    return list(library().validate_environment(model=name)["missing_keys"])
+    return list(load_litellm().validate_environment(model=name)["missing_keys"])
 
 
-def sees_pictures(name: str) -> bool | None:
+def supports_vision(name: str) -> bool | None:
     """Whether litellm's table says that the model takes pictures; None if it does not list it."""
-    table = library().model_cost
+    table = load_litellm().model_cost
     entry = table.get(name) or table.get(name.partition("/")[2])
     return None if entry is None else bool(entry.get("supports_vision"))
 
 
 def count_tokens(name: str, messages: Sequence[Mapping[str, Any]]) -> int:
     """Tokens of a conversation by the model's tokenizer, as far as litellm carries it (else OpenAI's)."""
-    return int(library().token_counter(model=name.removeprefix("openrouter/"), messages=[dict(m) for m in messages]))
+    asked = {"model": name.removeprefix("openrouter/"), "messages": [dict(message) for message in messages]}
+    return int(load_litellm().token_counter(**asked))

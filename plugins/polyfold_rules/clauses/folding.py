@@ -8,10 +8,10 @@ from polyfold_rules.clauses.clause import MIDDLE, Clause, ahead_of, parts_of
 from polyfold_rules.clauses.flaps import fold_band, fold_corner, fold_corners, fold_edge, fold_edges, fold_sleeve
 from polyfold_rules.clauses.goals import MAX_HALVES, fold_in_fraction, fold_in_half
 from polyfold_rules.clauses.whole import fold_whole
+from polyfold_rules.frames.frame import WHOLES, Frame
+from polyfold_rules.frames.lookahead import singled_out
 from polyfold_rules.shapes.folds import OPPOSITE_CORNER, OPPOSITE_EDGE, Fold
 from polyfold_rules.shapes.parts import Garment, NotUnderstoodError, Part
-from polyfold_rules.words.frames import WHOLES, Frame
-from polyfold_rules.words.lookahead import singled_out
 from polyfold_rules.words.phrases import NounPhrase
 
 

@@ -1,4 +1,4 @@
-"""How often instructions are planned as meant: ``python -m polyfold.benchmark.language``.
+"""How often instructions are planned as meant: ``python -m experiments.benchmarks.language.understanding``.
 
 Every instruction is planned by a planner and a language model on a seeded garment, lying within 20 degrees of upright,
 and folded ideally, without physics or camera: the model text of each step comes from the fold before. The cloth that
@@ -96,7 +96,7 @@ def plan_ideally(text: str, laid: Laid, planner: Planner, llm: Any) -> list[Fold
 
 
 def folded_states(particles: NDArray[np.float64], lines: Sequence[FoldLine]) -> list[NDArray[np.float64]]:
-    """Particles [px] before the first and after each fold."""
+    """Particles [px], shape (N, 2), before the first and after each fold."""
     states = [particles]
     for line in lines:
         now = states[-1]
@@ -206,7 +206,7 @@ def suite_set(suite: Suite) -> dict[str, Any]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the benchmark and print its table and failures."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--set", help="TOML file of instructions; without it, those of the task suite")
     part = parser.add_mutually_exclusive_group()
     part.add_argument("--held-out", action="store_true", help="only entries with held_out = true")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 
+from polyfold_rules.wishes.readers import Reader
 from polyfold_rules.wishes.wish import Bound, Wish
 from polyfold_rules.words.spelling import NUMBERS
 
@@ -35,8 +35,6 @@ COUNTS = {**NUMBERS, "twelve": 12, "sixteen": 16, "double": 2, "single": 1, "bot
 NUMBER = rf"(?P<number>\d+|{'|'.join(COUNTS)})"
 STEP = r"(?:steps?|folds?|moves?|stages?|goes|foldings?|movements?)"
 
-Reader = Callable[[Wish, re.Match[str]], None]
-
 TOLERANCE = 1.25
 """A size that is asked for may be missed by this factor: nobody measures a quarter."""
 
@@ -55,7 +53,8 @@ def about(quantity: str, value: float) -> Bound:
     return Bound(quantity, value / TOLERANCE, value * TOLERANCE, value)
 
 
-def _is(wish: Wish, match: re.Match[str]) -> None:
+def is_share(wish: Wish, match: re.Match[str]) -> None:
+    """A size that is a share of what it was."""
     wish.bounds.append(about(_quantity(match), _share(match)))
 
 
@@ -64,7 +63,8 @@ def _less_by(wish: Wish, match: re.Match[str]) -> None:
     wish.bounds.append(Bound(_quantity(match), share / 1.15, share * 1.15, share))
 
 
-def _at_most(wish: Wish, match: re.Match[str]) -> None:
+def at_most(wish: Wish, match: re.Match[str]) -> None:
+    """A size that must not be more than a share of what it was."""
     wish.bounds.append(Bound(_quantity(match), high=_share(match) * 1.15))
 
 
@@ -72,7 +72,8 @@ def _below(wish: Wish, match: re.Match[str]) -> None:
     wish.bounds.append(Bound(_quantity(match), high=_share(match) * 0.97))
 
 
-def _halved(wish: Wish, match: re.Match[str]) -> None:
+def halved(wish: Wish, match: re.Match[str]) -> None:
+    """Half of a size."""
     wish.bounds.append(about(_quantity(match), 1 / 2))
 
 
@@ -136,19 +137,19 @@ SIZES: list[tuple[str, Reader]] = [
      rf"most)| or less"
      rf"| or fewer| tops| exactly| will do| is enough| are enough| is plenty| allow| max| maximum)?", _steps),
     (rf"as small as {NUMBER} {STEP} allow", _as_small_as_steps_allow),
-    (rf"{A}{FRACTION}(?: of)?(?: {OF})?(?: ?{DIM})(?: (?:at (?:the )?most|or less|maximum|max))", _at_most),
-    (rf"{A}{FRACTION} ?{OF}{NOUN}(?: left| as before| of (?:before|now|{CLOTH}))?", _is),
-    (rf"{A}{FRACTION} as {DIM}(?: as (?:before|now|it (?:is|was)|they (?:are|were))(?: now)?)?", _is),
-    (rf"{A}{FRACTION} of (?:the |its |their )?{CLOTH}", _is),
-    (rf"(?:down to|to|about|by|is|covers?|only|just) (?:a |an |one )?{FRACTION}(?! of| too| \w+er)", _is),
+    (rf"{A}{FRACTION}(?: of)?(?: {OF})?(?: ?{DIM})(?: (?:at (?:the )?most|or less|maximum|max))", at_most),
+    (rf"{A}{FRACTION} ?{OF}{NOUN}(?: left| as before| of (?:before|now|{CLOTH}))?", is_share),
+    (rf"{A}{FRACTION} as {DIM}(?: as (?:before|now|it (?:is|was)|they (?:are|were))(?: now)?)?", is_share),
+    (rf"{A}{FRACTION} of (?:the |its |their )?{CLOTH}", is_share),
+    (rf"(?:down to|to|about|by|is|covers?|only|just) (?:a |an |one )?{FRACTION}(?! of| too| \w+er)", is_share),
     (rf"{A}{FRACTION} too {DIM}", _less_by),
     (rf"{A}{FRACTION} (?P<dim>\w+er)(?: than (?:before|now|it is|they are))?", _less_by),
-    (rf"(?:no|not|never)(?: be)?(?: any)? {DIM} than {A}{FRACTION}(?: of {CLOTH})?", _at_most),
-    (rf"(?:no more|not more) than {A}{FRACTION}(?: ?{OF}{DIM})?(?: of (?:the |its |their )?{CLOTH})?", _at_most),
-    (rf"at most {A}{FRACTION}(?: ?{OF}{DIM})?(?: of (?:the |its |their )?{CLOTH})?", _at_most),
+    (rf"(?:no|not|never)(?: be)?(?: any)? {DIM} than {A}{FRACTION}(?: of {CLOTH})?", at_most),
+    (rf"(?:no more|not more) than {A}{FRACTION}(?: ?{OF}{DIM})?(?: of (?:the |its |their )?{CLOTH})?", at_most),
+    (rf"at most {A}{FRACTION}(?: ?{OF}{DIM})?(?: of (?:the |its |their )?{CLOTH})?", at_most),
     (rf"(?:less|smaller|shorter|narrower|lower) than {A}{FRACTION}(?: ?{OF}{DIM})?(?: of {CLOTH})?", _below),
-    (rf"(?:halve|halving|halved) {OF}{DIM}", _halved),
-    (rf"{OF}{DIM} (?:is |are |be |to be )?halved", _halved),
+    (rf"(?:halve|halving|halved) {OF}{DIM}", halved),
+    (rf"{OF}{DIM} (?:is |are |be |to be )?halved", halved),
     (rf"{NUMBER} times {DIM}", _times_smaller),
     (rf"(?:the )?(?:full|whole|entire|same|all (?:of )?(?:the|its)) {DIM}(?: as (?:before|now))?", _unchanged),
     (rf"as {DIM} as (?:before|now|it (?:is|was)|they (?:are|were)|ever)(?: now)?", _unchanged),
@@ -168,21 +169,21 @@ SIZES: list[tuple[str, Reader]] = [
      rf"than "
      rf"|larger than )*{FRACTION}(?: of (?:the |its |their )?{CLOTH})?", _both_at_most),
     (rf"(?:must |should |may |can |shall )?not (?:\w+ |take up )(?:more than|over) {A}{FRACTION}(?: ?{OF}{DIM})?"
-     rf"(?: of (?:the |its |their )?{CLOTH})?", _at_most),
+     rf"(?: of (?:the |its |their )?{CLOTH})?", at_most),
     (rf"(?:nothing |not |no )(?:larger|bigger|more|longer|wider) than {A}{FRACTION}(?: of (?:the |its |their )?"
      rf"{CLOTH})?",
-     _at_most),
+     at_most),
     (rf"(?:under|below) {A}{FRACTION}(?: ?{OF}{DIM})?(?: of (?:the |its |their )?{CLOTH})?", _below),
     (rf"{A}{FRACTION} (?:less|fewer)(?: of the \w+)?", _less_by),
-    (rf"{A}{FRACTION} (?:or (?:thereabouts|so|less)|at most)", _is),
-    (rf"(?<=: ){A}{FRACTION}(?=[.!?;,]|$)", _is),
-    (rf"{A}{FRACTION} ?{OF}{NOUN}(?: (?:that|which))?(?: of)? {CLOTH}", _is),
-    (rf"{A}{FRACTION} of (?:them|it|these) (?:showing|visible|left)", _is),
+    (rf"{A}{FRACTION} (?:or (?:thereabouts|so|less)|at most)", is_share),
+    (rf"(?<=: ){A}{FRACTION}(?=[.!?;,]|$)", is_share),
+    (rf"{A}{FRACTION} ?{OF}{NOUN}(?: (?:that|which))?(?: of)? {CLOTH}", is_share),
+    (rf"{A}{FRACTION} of (?:them|it|these) (?:showing|visible|left)", is_share),
     (rf"{OF}{DIM} (?:as (?:it )?is|kept|unchanged|preserved|untouched|(?:stays|remains)(?: as it is| the "
      rf"same)?)", _unchanged),
     (rf"{OF}{DIM} (?:ought to |should |must |has to |is |comes? |go |be |shrink |down |to |only |an? |one )+"
-     rf"{FRACTION}", _is),
-    (rf"{A}{FRACTION} (?:of )?(?:the |its |their |my ){CLOTH} {NOUN}", _is),
+     rf"{FRACTION}", is_share),
+    (rf"{A}{FRACTION} (?:of )?(?:the |its |their |my ){CLOTH} {NOUN}", is_share),
     (rf"every bit as {DIM}(?: as (?:before|now|it (?:is|was)))?", _unchanged),
 ]  # fmt: skip
 """Patterns of sizes and counts."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 
+from polyfold_rules.wishes.readers import Reader, hides, nothing, one_sleeve, shortened, stacked
+from polyfold_rules.wishes.sizes import DIM, about
 from polyfold_rules.wishes.wish import Wish
-from polyfold_rules.wishes.wish_sizes import DIM, Reader, about
 
 SIDE = r"(?:top|bottom|left|right|upper|lower)"
 EDGES = {"upper": "top", "lower": "bottom", "waistband": "top", "waist": "top", "collar": "top", "neck": "top",
@@ -27,11 +28,6 @@ def _body_wide(wish: Wish, match: re.Match[str]) -> None:
 
 def _gate(wish: Wish, match: re.Match[str]) -> None:
     wish.looks.append("gate")
-
-
-def _hides(wish: Wish, match: re.Match[str]) -> None:
-    side = match.groupdict().get("side")
-    wish.hidden |= {side} if side else {"left", "right"}
 
 
 def _only_sleeve(wish: Wish, match: re.Match[str]) -> None:
@@ -96,14 +92,6 @@ def _three_cornered(wish: Wish, match: re.Match[str]) -> None:
     wish.shapes.append("triangle")
 
 
-def _one_sleeve(wish: Wish, match: re.Match[str]) -> None:
-    wish.looks.append("onesleeve")
-
-
-def _lifted_hem(wish: Wish, match: re.Match[str]) -> None:
-    wish.looks.append("shorts")
-
-
 def _mirrored(wish: Wish, match: re.Match[str]) -> None:
     wish.looks.append("mirrored")
 
@@ -112,16 +100,8 @@ def _print_inside(wish: Wish, match: re.Match[str]) -> None:
     wish.looks.append("book")
 
 
-def _stands(wish: Wish, match: re.Match[str]) -> None:
-    wish.purposes.append("pile")
-
-
 def _hexagon(wish: Wish, match: re.Match[str]) -> None:
     wish.looks.append("hexagon")
-
-
-def _nothing(wish: Wish, match: re.Match[str]) -> None:
-    """Words that make no difference to the end."""
 
 
 PARTS: list[tuple[str, Reader]] = [
@@ -129,9 +109,9 @@ PARTS: list[tuple[str, Reader]] = [
     (r"as (?:wide|narrow) as (?:its|the) (?:body|torso|trunk|chest)", _body_wide),
     (rf"{UNSEEN} (?:the |its |any |both |of )*(?:(?P<side>left|right) )?(?:sleeves?|arms?)(?: any ?more| showing| "
      rf"sticking out)*",
-     _hides),
+     hides),
     (rf"(?:the |its |both )*(?:(?P<side>left|right) )?(?:sleeves?|arms?) (?:{DAMAGED} (?:and |so |it )*|is |are |"
-     rf"should |must |may |can |be |to |has |have )*{GONE}", _hides),
+     rf"should |must |may |can |be |to |has |have )*{GONE}", hides),
     (r"(?:the )?(?P<one>left|right) sleeve only|(?:only|nothing but) (?:the |its |a )?"
      r"(?P<other>left|right) (?:sleeve|arm)", _only_sleeve),
     (rf"{UNSEEN} (?:the |its )?(?P<corner>(?:top|bottom|upper|lower) (?:left|right)) corner(?: any ?more)?",
@@ -154,14 +134,14 @@ PARTS: list[tuple[str, Reader]] = [
     (r"(?:that |which )?(?:meet|meets|meeting|touch|touching) (?:in|across|along|at|over) (?:the|its) (?:middle|"
      r"centre)"
      r"(?: of (?:a|the) window)?", _gate),
-    (r"(?:the |its )?(?:collar|neck|print|logo|front) (?:on top|facing up|visible|showing|up)", _nothing),
+    (r"(?:the |its )?(?:collar|neck|print|logo|front) (?:on top|facing up|visible|showing|up)", nothing),
     (r"(?:all )?(?:four |the )*(?:points|corners|tips) (?:meet|meeting|meet up|touching)(?: in the (?:middle|"
      r"centre))?",
-     _nothing),
-    (r"(?:leave |keep )?(?:all )?the (?:rest|others?) (?:as (?:it is|they are)|untouched|alone)", _nothing),
-    (r"(?:and )?(?:nothing else|no other fold)|the sleeves (?:may|can) stick out|as if (?:it|they) had", _nothing),
-    (r"i do not (?:mind|care) (?:how|which|where)|(?:no|does not|do not|never) (?:matter|mind) how", _nothing),
-    (rf"(?:however|no matter how|never mind how) {DIM}|across the (?:hips|seat|waist|chest|shoulders)", _nothing),
+     nothing),
+    (r"(?:leave |keep )?(?:all )?the (?:rest|others?) (?:as (?:it is|they are)|untouched|alone)", nothing),
+    (r"(?:and )?(?:nothing else|no other fold)|the sleeves (?:may|can) stick out|as if (?:it|they) had", nothing),
+    (r"i do not (?:mind|care) (?:how|which|where)|(?:no|does not|do not|never) (?:matter|mind) how", nothing),
+    (rf"(?:however|no matter how|never mind how) {DIM}|across the (?:hips|seat|waist|chest|shoulders)", nothing),
     (rf"(?:there (?:is )?)?(?:an? )?(?:\w+ )?{FLAW} (?:is )?(?:in|on|at) the {CORNER} corner"
      r"(?: (?:that|which) (?:\w+ )?(?:must|should|may) not (?:see|be seen|show))?", _hides_corner),
     (rf"(?:a |the )?(?:page with a )?(?:dog ?ear|turned down corner) (?:at|in|on) the {CORNER}(?: "
@@ -190,23 +170,23 @@ PARTS: list[tuple[str, Reader]] = [
     (r"(?:that |was |were )*(?:pulled|drawn|rolled|raised) up half ?(?:way)?", _pulled_up),
     (r"(?:the |its )?(?:longest|long) (?:side|edge) (?:facing|towards|at|on) the (?:(?:bottom|lower|top|upper) )?"
      r"(?:left|right)(?: corner)?"
-     r"|(?:flat|straight) on one side|a tip on the other", _nothing),
+     r"|(?:flat|straight) on one side|a tip on the other", nothing),
     (rf"(?:that |which )?(?:shows?|directs?) (?:to )?(?:the )?(?P<place>{SIDE})|(?:nose|tip|point|apex) (?:is )?"
      rf"(?:at|to) the (?P<at>{SIDE})", _points),
     (r"(?:the |its |their |all |with |square |have |has |only )*(?:right angles|right angled|square corners|"
      r"straight edges|four straight edges|straight sides)"
      r"(?: all (?:a?round|over))?", _rectangular),
     (r"(?:both )?(?:the |its )?sides (?:running |run |are |going )?straight(?: (?:down )?from (?:the )?shoulders? "
-     r"to (?:the )?hem)?", _nothing),
+     r"to (?:the )?hem)?", nothing),
     (r"one (?:armed|sleeved)(?: \w+)?,? ?(?:never mind|no matter|i do not (?:care|mind)) which(?: \w+)?|one "
-     r"(?:armed|sleeved)", _one_sleeve),
-    (r"(?:the )?(?:other|right|left) (?:one|sleeve|arm) (?:may|can)(?: (?:stay|show|remain|be seen))?", _nothing),
+     r"(?:armed|sleeved)", one_sleeve),
+    (r"(?:the )?(?:other|right|left) (?:one|sleeve|arm) (?:may|can)(?: (?:stay|show|remain|be seen))?", nothing),
     (r"(?:the |its |their |whose )*(?:cuffs|ankles|hems?|leg ends) (?:are to |should |that )*(?:reach|meet|touch|"
      r"at|on)(?:es|ing)? (?:the |their )?"
-     r"(?:belt|waist|waistband|shoulders?)", _lifted_hem),
+     r"(?:belt|waist|waistband|shoulders?)", shortened),
     (r"(?:bares?|shows?|baring|showing|reveals?) (?:the |my |your )?(?:midriff|belly|navel|tummy)|(?:just )?"
      r"(?:above|down to|to) the knees?"
-     r"|knee length|knee long", _lifted_hem),
+     r"|knee length|knee long", shortened),
     (r"(?:their |its |the |both |two )*(?:mirrored|mirror|matching|symmetric|symmetrical) halves (?:belong |lie |"
      r"lying |should |be |are |placed )*"
      r"(?:on|onto|over) (?:one another|each other|one)|left and right (?:are |halves |lying |lie |placed )*(?:on|"
@@ -214,19 +194,19 @@ PARTS: list[tuple[str, Reader]] = [
      r"(?:one another|each other|top of each other)|(?:a )?butterfly(?: that| which)?(?: has| with)? (?:closed|"
      r"folded|shut) (?:its )?wings", _mirrored),
     (r"(?:their |the |its )?handles (?:are )?(?:side by side|next to each other|touching)(?: (?:at|in|along) the "
-     r"(?:centre|middle)(?: line)?)?", _nothing),
+     r"(?:centre|middle)(?: line)?)?", nothing),
     (r"without (?:any )?(?:scissors|cutting)(?: of course)?|(?:of course|that is all|no more no fewer|no more,? "
-     r"no less|no more,? no fewer)", _nothing),
+     r"no less|no more,? no fewer)", nothing),
     (r"(?:change|changing|fold|touch) as little as possible|(?:whichever|whatever|any) way(?: you like)?|as you "
-     r"(?:like|please)", _nothing),
-    (r"(?:the )?(?:collar|neck|neckline|print|logo|front) (?:facing|towards|to) (?:the |its )?\w+", _nothing),
+     r"(?:like|please)", nothing),
+    (r"(?:the )?(?:collar|neck|neckline|print|logo|front) (?:facing|towards|to) (?:the |its )?\w+", nothing),
     (r"(?:the )?(?:print|logo|picture|pattern)(?: on the (?:chest|front))? (?:should |must |had |better |has to |"
      r"is to |be |lie |lies )*"
      r"(?:inside|protected|covered)", _print_inside),
-    (r"(?:stands?|standing) (?:it |them )?(?:upright|on edge|on (?:its|their) edge)(?: in)?", _stands),
+    (r"(?:stands?|standing) (?:it |them )?(?:upright|on edge|on (?:its|their) edge)(?: in)?", stacked),
     (r"(?:its |the |all )?(?:four )?(?:points|corners|tips) (?:are |lying |lie )?(?:at|on) the (?:middles|"
      r"midpoints|centres) of the "
-     r"(?:old |former |original |four |flat )?(?:edges|sides)", _nothing),
+     r"(?:old |former |original |four |flat )?(?:edges|sides)", nothing),
     (r"six (?:sides|sided|corners|cornered)|hexagon|hexagonal", _hexagon),
     (r"(?:three|3) (?:cornered|corners|sided|sides|points|pointed|angled)", _three_cornered),
 ]  # fmt: skip

@@ -7,47 +7,53 @@ import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from polyfold.errors import LLMAccessError
-
-__all__ = [
-    "Model",
-    "Price",
-    "check_key",
-    "check_known",
-    "cost_of",
-    "find_model",
-    "key_variable",
-    "local_address",
-    "models",
-]
+from polyfold.errors import LLMAccessError, did_you_mean
 
 
 @dataclass(frozen=True)
 class Price:
-    """US dollars per million tokens, with the day it was read and where."""
+    """A list price.
+
+    Attributes:
+        input: US dollars per million tokens sent.
+        output: US dollars per million tokens answered.
+        as_of: the day it was read, ``YYYY-MM-DD``.
+        source: where.
+    """
 
     input: float
     output: float
-    read: str
+    as_of: str
     source: str
 
 
 @dataclass(frozen=True)
 class Model:
-    """One entry of ``models.toml``; see the comments there."""
+    """One entry of ``models.toml``.
+
+    Attributes:
+        id: what follows ``litellm:``, the route first.
+        label: short name in tables.
+        sets: lists that it belongs to: ``paper``, ``current``.
+        vision: whether it takes pictures; None if not known.
+        response_format: whether it takes that parameter; None if not known.
+        unsupported_params: parameters that it refuses, left out of its requests.
+        reasoning_reserve: tokens of hidden reasoning, added to what a prompt asks for.
+        retired: the day its vendor ends it, ``YYYY-MM-DD``, where known.
+        price: None if not known.
+    """
 
     id: str
     label: str
     sets: tuple[str, ...] = ()
     vision: bool | None = None
-    json: bool | None = None
-    drops: tuple[str, ...] = ()
-    reserve: int = 0
+    response_format: bool | None = None
+    unsupported_params: tuple[str, ...] = ()
+    reasoning_reserve: int = 0
     retired: str | None = None
     price: Price | None = None
 
@@ -66,8 +72,9 @@ def models(listed_in: str | None = None) -> tuple[Model, ...]:
 
 def _model(entry: Mapping[str, Any]) -> Model:
     price = entry.get("price")
-    values = {**entry, "sets": tuple(entry.get("sets", ())), "drops": tuple(entry.get("drops", ()))}
-    values["price"] = Price(**{**price, "read": price["read"].isoformat()}) if price else None
+    lists = {name: tuple(entry.get(name, ())) for name in ("sets", "unsupported_params")}
+    values: dict[str, Any] = {**entry, **lists}
+    values["price"] = Price(**{**price, "as_of": price["as_of"].isoformat()}) if price else None
     values["retired"] = entry["retired"].isoformat() if "retired" in entry else None
     return Model(**values)
 
@@ -77,7 +84,18 @@ def find_model(name: str) -> Model | None:
     return next((model for model in models() if model.id == name), None)
 
 
-def local_address(name: str) -> str | None:
+def accepted_params(name: str, params: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters that a model takes, with its reserve for hidden reasoning in ``max_tokens``."""
+    model = find_model(name)
+    if model is None:
+        return dict(params)
+    accepted = {param: value for param, value in params.items() if param not in model.unsupported_params}
+    if "max_tokens" in accepted:
+        accepted["max_tokens"] += model.reasoning_reserve
+    return accepted
+
+
+def default_api_base(name: str) -> str | None:
     """Where a local server of this route listens unless told otherwise; None for routes of providers."""
     return _table()["local"].get(_route(name))
 
@@ -91,33 +109,32 @@ def _route(name: str) -> str:
     return name.partition("/")[0]
 
 
-def check_known(name: str, api_base: str | None, unlisted: bool) -> None:
+def check_model_name(name: str, api_base: str | None, unlisted: bool) -> None:
     """Refuse what looks like a typing error, before anything is folded.
 
     Raises:
         LLMAccessError: if the name has no route, or no table lists the model and nothing says that it exists anyway.
     """
-    near = get_close_matches(name, [model.id for model in models()], n=3, cutoff=0.5)
-    hint = f"near names are {', '.join(near)}" if near else f"for example litellm:{models()[1].id}"
+    hint = did_you_mean(name, (model.id for model in models()), f"for example litellm:{models()[1].id}")
     if "/" not in name.strip("/"):
         raise LLMAccessError(
             f"{name!r} does not name a model: write litellm:ROUTE/MODEL, with the provider as route; {hint}"
         )
     known = _table()["keys"].keys() | _table()["local"].keys()
-    if find_model(name) or ((api_base or local_address(name)) and _route(name) in known):
+    if find_model(name) or ((api_base or default_api_base(name)) and _route(name) in known):
         return
-    from polyfold_llms.client import knows_model, knows_route
+    from polyfold_llms.litellm_client import has_provider, lists_model
 
-    if _route(name) not in known and not knows_route(_route(name)):
+    if _route(name) not in known and not has_provider(_route(name)):
         raise LLMAccessError(f"there is no route {_route(name)!r} to a provider (in {name!r}); {hint}")
-    if api_base is None and not unlisted and not knows_model(name):
+    if api_base is None and not unlisted and not lists_model(name):
         raise LLMAccessError(
-            f"no table lists the model {name!r}, which may be a typing error; {hint}. If it exists, say so: "
-            "--set llm.unlisted=true"
+            f"no table lists the model {name!r}, which may be a typing error; if it exists, say so: "
+            f"--set llm.unlisted=true; {hint}"
         )
 
 
-def check_key(name: str, variable: str | None) -> None:
+def check_api_key(name: str, variable: str | None) -> None:
     """Refuse a provider whose key is not in the environment. Raises LLMAccessError naming the variable to set.
 
     Args:
@@ -125,9 +142,9 @@ def check_key(name: str, variable: str | None) -> None:
         variable: environment variable with the key; None leaves it to litellm to know what a rare route needs.
     """
     if variable is None:
-        from polyfold_llms.client import missing_variables
+        from polyfold_llms.litellm_client import missing_environment
 
-        missing: Sequence[str] = missing_variables(name)
+        missing: Sequence[str] = missing_environment(name)
     else:
         missing = [] if os.environ.get(variable, "").strip() else [variable]
     if missing:
@@ -137,7 +154,7 @@ def check_key(name: str, variable: str | None) -> None:
         )
 
 
-def cost_of(name: str, usage: Mapping[str, int], reported: Any) -> tuple[float | None, str]:
+def call_cost(name: str, usage: Mapping[str, int], reported: Any) -> tuple[float | None, str]:
     """US dollars and where they come from: the provider's own figure, else the table's price, else (None, "").
 
     Args:
@@ -152,7 +169,7 @@ def cost_of(name: str, usage: Mapping[str, int], reported: Any) -> tuple[float |
         return None, ""
     price = model.price
     dollars = (usage["prompt_tokens"] * price.input + usage["completion_tokens"] * price.output) / 1e6
-    return dollars, f"price table of {price.read} ({price.source})"
+    return dollars, f"price table of {price.as_of} ({price.source})"
 
 
 def _is_amount(value: Any) -> bool:
