@@ -65,7 +65,7 @@ def seen(garment, scale=500.0, angle=0.0):
 @pytest.mark.parametrize("line", SAMPLE, ids=lambda line: Path(line["image"]).parent.name + line["image"][-27:-12])
 def test_real_outlines_become_sound_twins(line):
     kind, outline, keypoints = annotation(line)
-    twin = twin_from_outline(outline, kind, keypoints, pattern(kind), edge_length=0.02)
+    twin = twin_from_outline(outline, kind, keypoints, KINDS[kind].pattern, edge_length=0.02)
     pattern = KINDS[kind].pattern
     assert_sound(twin.mesh, 0.02, least_angle=12.0, shortest=0.25)
     assert twin.mesh.layers == pattern.layers
