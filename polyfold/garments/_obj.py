@@ -158,8 +158,7 @@ def _nearest(vertices: Floats, points: Floats) -> list[int]:
 
 def _frame(places: Mapping[str, Floats], pattern: Pattern, path: Path) -> tuple[Floats, Floats, Floats]:
     """Unit vectors right, up and towards the viewer, as the keypoints say, each of shape (3,)."""
-    up = np.mean([places[name] for name in pattern.top], axis=0)
-    up = up - np.mean([places[name] for name in pattern.bottom], axis=0)
+    up = pattern.up(places)
     pairs = [(name, name.replace("_left", "_right")) for name in pattern.corners if name.endswith("_left")]
     right = np.mean([places[b] - places[a] for a, b in pairs], axis=0)
     size = np.ptp(np.array(list(places.values())), axis=0).max()

@@ -108,8 +108,7 @@ def _complete(keypoints: Mapping[str, ArrayLike], pattern: Pattern) -> Floats:
 def _upright(ring: Floats, corners: Floats, pattern: Pattern, size: float) -> tuple[Floats, Floats]:
     """Turned so that bottom to top points up, and scaled to the size [m]."""
     places = {name: corners[index] for index, name in enumerate(pattern.corners)}
-    up = np.mean([places[name] for name in pattern.top], axis=0)
-    up -= np.mean([places[name] for name in pattern.bottom], axis=0)
+    up = pattern.up(places)
     length = float(np.hypot(*up))
     if length == 0.0:
         raise GarmentError("the top and the bottom of the garment coincide; correct the keypoints")

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.garments import Garment
-from polyfold.geometry import FoldLine
-from polyfold.geometry import _plane as geometry
+from polyfold.geometry import FoldLine, contour_of
 from polyfold.types import Action, Observation, SimState
 
 Floats = NDArray[np.float64]
@@ -147,7 +146,7 @@ def cloth_mask(observation: Observation) -> NDArray[np.bool_]:
 
 def random_action(mask: NDArray[np.bool_], rng: np.random.Generator) -> tuple[Action, FoldLine]:
     """A random fold line across the cloth; one random pick on the outline left of it, the other far from the first."""
-    outline = geometry.contour_of(mask)
+    outline = contour_of(mask)
     height, width = mask.shape
     while True:
         ends = outline[rng.choice(len(outline), 2, replace=False)]
