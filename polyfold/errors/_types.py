@@ -2,20 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = [
-    "ActionError",
-    "ConfigError",
-    "GarmentError",
-    "GroundingError",
-    "LLMAccessError",
-    "LLMError",
-    "PlanError",
-    "PluginError",
-    "PolyfoldError",
-    "RefusedError",
-    "SimulationError",
-]
-
 
 class PolyfoldError(Exception):
     """Base of every error that PolyFold raises on purpose."""

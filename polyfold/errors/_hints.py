@@ -1,0 +1,53 @@
+"""Phrases for the messages of errors: what an unknown name may have meant, and what a model of pydantic refused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str | None = None) -> str:
+    """Say which known names are near an unknown one, or which there are.
+
+    Args:
+        name: the name that is not known.
+        known: the names that are.
+        otherwise: what to say where none is near; by default all names that are known.
+
+    Returns:
+        A phrase for the end of a message, such as ``did you mean 'caso'?``, the nearest name first.
+    """
+    known = list(known)
+    near = get_close_matches(name, known, n=3, cutoff=0.6)
+    if near:
+        return f"did you mean {' or '.join(map(repr, near))}?"
+    if otherwise is not None:
+        return otherwise
+    return f"the known ones are {', '.join(known)}" if known else "there are none"
+
+
+def validation_problem(error: ValidationError, known: Iterable[str] = (), below: int = 0) -> str:
+    """Say what a model of pydantic refused first, and what to do.
+
+    Args:
+        error: what pydantic raised.
+        known: the model's settings, to suggest one for an unknown name.
+        below: leave out so many parts of the place in the model, which the message names already.
+
+    Returns:
+        A phrase for a message that begins with where the values came from, such as
+        ``has a bad value for 'policy.gamma': Input should be less than 1; change it``.
+    """
+    problem = error.errors()[0]
+    place = ".".join(str(part) for part in problem["loc"][below:])
+    if problem["type"] == "extra_forbidden":
+        known = list(known)
+        return f"has no setting {place!r}; {did_you_mean(place, known) if known else 'remove it'}"
+    said = problem["msg"].removeprefix("Value error, ")
+    if not place:
+        return f"has values that don't go together: {said}; change them"
+    return f"has a bad value for {place!r}: {said}; change it"

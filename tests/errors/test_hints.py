@@ -1,0 +1,64 @@
+"""Messages say what an unknown name may have meant, and what a model refused."""
+
+from typing import Literal
+
+import pytest
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from polyfold.errors import did_you_mean, validation_problem
+
+
+class Inner(BaseModel):
+    gamma: float = Field(0.5, lt=1)
+
+
+class Settings(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+    policy: Inner = Inner()
+    color: Literal["red", "blue"] = "red"
+    arms: int = 2
+    reach: int = 2
+
+    @model_validator(mode="after")
+    def _together(self):
+        if self.arms > self.reach:
+            raise ValueError("arms need reach")
+        return self
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "said"),
+    [
+        ("casso", ["farthest", "caso"], "did you mean 'caso'?"),
+        ("arm", ["arms", "charm", "reach"], "did you mean 'arms' or 'charm'?"),
+        ("zzz", ["arms", "reach"], "the known ones are arms, reach"),
+        ("zzz", [], "there are none"),
+    ],
+)
+def test_near_names_come_first_and_else_all(name, known, said):
+    assert did_you_mean(name, known) == said
+
+
+def test_where_nothing_is_near_the_caller_may_say_more():
+    assert did_you_mean("zzz", ["arms"], "for example arms") == "for example arms"
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"policy": {"gamma": 2}}, "has a bad value for 'policy.gamma': Input should be less than 1; change it"),
+        ({"colour": "red"}, "has no setting 'colour'; did you mean 'color'?"),
+        ({"arms": 3}, "has values that don't go together: arms need reach; change them"),
+    ],
+)
+def test_what_a_model_refuses_is_named_with_what_to_do(settings, said):
+    with pytest.raises(ValidationError) as caught:
+        Settings(**settings)
+    assert validation_problem(caught.value, Settings.model_fields) == said
+
+
+def test_what_the_message_names_already_is_left_out():
+    with pytest.raises(ValidationError) as caught:
+        Settings(policy={"gamma": 2})
+    assert validation_problem(caught.value, below=1).startswith("has a bad value for 'gamma':")
