@@ -18,7 +18,8 @@ from polyfold.garments import Garment
 from polyfold.geometry import Camera
 from polyfold.logs import versions
 from polyfold.rollout import run_episode
-from polyfold.tasks import Task, fold_ideally, fold_lines
+from polyfold.tasks import Task, fold_lines
+from polyfold.tasks._ideal import fold_step_by_step
 from polyfold.types import Outcome, SimState
 
 
@@ -89,7 +90,7 @@ def ideal_reference(task: Task, garment: Garment, flat: SimState) -> Reference:
         flat: the state before the first fold.
     """
     lines = fold_lines(task, flat.keypoint_pixels())
-    folded = [fold_ideally(flat, garment.mesh, lines[: count + 1]) for count in range(len(lines))]
+    folded = fold_step_by_step(flat, garment.mesh, lines)
     after = tuple(replace(flat, positions=ideal.positions) for ideal in folded)
     return Reference(Outcome(flat, after[-1], folded[-1].mask), after)
 

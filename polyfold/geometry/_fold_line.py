@@ -47,6 +47,11 @@ class FoldLine:
         """Points [px], shape (..., 2), reflected across the line."""
         return geometry.mirror(points, self.start, self.end)
 
+    def fold(self, points: ArrayLike) -> Floats:
+        """Points [px], shape (..., 2), after the fold: mirrored where they are lifted, else where they were."""
+        points = np.asarray(points, float)
+        return np.where(self.lifts(points)[..., None], self.mirror(points), points)
+
     def reversed(self) -> FoldLine:
         """The same line with the other side lifted."""
         return FoldLine(self.end, self.start)

@@ -76,7 +76,7 @@ class FoldedModel:
         Raises:
             PlanError: if the line is too short, or leaves all cloth on one side; the message says which.
         """
-        facets = fold_facets(self.facets(), np.array(line.start), np.array(line.end), len(self.folds) + 1)
+        facets = fold_facets(self.facets(), line, len(self.folds) + 1)
         return FoldedModel(self.rest, self.names, self.descriptions, (*self.folds, line), self.kind, facets)
 
     def before(self, fold: int) -> FoldedModel:
@@ -86,11 +86,9 @@ class FoldedModel:
     def facets(self) -> tuple[Facet, ...]:
         """The flat pieces the garment consists of now."""
         if self._facets is None:
-            flat = np.column_stack([np.eye(2), np.zeros(2)])
-            labels = tuple((name,) for name in self.names)
-            facets: tuple[Facet, ...] = (Facet(self.rest, labels, ("",) * len(labels), 0, False, flat),)
+            facets: tuple[Facet, ...] = (Facet.flat(self.rest, self.names),)
             for number, line in enumerate(self.folds, start=1):
-                facets = fold_facets(facets, np.array(line.start), np.array(line.end), number)
+                facets = fold_facets(facets, line, number)
             object.__setattr__(self, "_facets", facets)
         return self._facets
 

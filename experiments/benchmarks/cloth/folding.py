@@ -99,7 +99,7 @@ class Trial:
     def act(self, fold: Fold, now: SimState) -> Action:
         """The action for a fold from where the picked particles are now; moves ``ideal`` along."""
         line = self._line(fold)
-        self.ideal = np.where(line.lifts(self.ideal)[:, None], line.mirror(self.ideal), self.ideal)
+        self.ideal = line.fold(self.ideal)
         pixels = now.camera.to_pixels(now.positions)
         picks = np.array([pixels[self._particle(name)] for name in fold.picks])
         return Action(picks, np.clip(line.mirror(picks), 0, np.array(self._size)[::-1] - 1))
