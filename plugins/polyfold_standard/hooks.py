@@ -47,6 +47,13 @@ def register_metrics(register):
 
 
 @hookimpl
+def register_criteria(register):
+    """Register the success criteria."""
+    register("lenient", "polyfold_standard.criteria:Lenient", "MPPE <= 30 mm, IoU >= 0.80, moved part <= 40 mm")
+    register("strict", "polyfold_standard.criteria:Strict", "MPPE <= 12.5 mm, IoU >= 0.90, moved part <= 20 mm")
+
+
+@hookimpl
 def register_tasks(register):
     """Register the suites."""
     register("polyfold70", "polyfold_standard:tasks/polyfold70.toml", "the 70 tasks of the paper's Table I")

@@ -28,6 +28,8 @@ class _Alignable(BaseModel):
 class MPPE:
     """Mean particle position error [mm]: mean distance of corresponding particles, best of the references."""
 
+    label: ClassVar[str] = "MPPE"
+    digits: ClassVar[int] = 1
     unit: ClassVar[str] = "mm"
     higher_is_better: ClassVar[bool] = False
 
@@ -45,6 +47,8 @@ class MPPE:
 class MIoU:
     """IoU of the silhouettes as the camera sees them, best of the references."""
 
+    label: ClassVar[str] = "mIoU"
+    digits: ClassVar[int] = 3
     unit: ClassVar[str] = ""
     higher_is_better: ClassVar[bool] = True
 
@@ -65,6 +69,8 @@ class MIoU:
 class MovedPartError:
     """Mean distance [mm] over the particles that the reference moved by more than 20 mm; doing nothing can't pass."""
 
+    label: ClassVar[str] = "moved part"
+    digits: ClassVar[int] = 1
     unit: ClassVar[str] = "mm"
     higher_is_better: ClassVar[bool] = False
 

@@ -1,20 +1,21 @@
 """Language models side by side (the paper's Fig. 12): success, validity, failures, latency, tokens and cost.
 
 The variants of a study are the models. What a model took stands in each record's ``language``, which is
-:meth:`polyfold.transcript.Transcript.accounts`. What is not known is a dash, never 0.
+:class:`polyfold.logs.Account` by role. What is not known is a dash, never 0.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from polyfold.analysis._results import Results
 from polyfold.analysis._statistics import Estimate, ratio
-from polyfold.analysis._tables import Table, shown
+from polyfold.analysis._tables import Cell, Figure, Table
+from polyfold.logs import Account, StudyEpisodeRecord
 
-Record = Mapping[str, Any]
+Taken = Callable[[Account], float | None]
+"""What a role took of something; None if it is unknown."""
 
 
 @dataclass(frozen=True)
@@ -27,68 +28,60 @@ class Measure:
         digits: after the point.
     """
 
-    total: Callable[[Record], float | None]
-    count: Callable[[Record], float]
+    total: Callable[[StudyEpisodeRecord], float | None]
+    count: Callable[[StudyEpisodeRecord], float]
     digits: int = 1
 
 
-def _one(record: Record) -> float:
+def _one(record: StudyEpisodeRecord) -> float:
     return 1.0
 
 
-def _sum(name: str) -> Callable[[Record], float | None]:
+def _total(record: StudyEpisodeRecord, taken: Taken) -> float | None:
     """The sum over an episode's roles; None if it is unknown for one, or if there was none."""
-
-    def total(record: Record) -> float | None:
-        values = [account.get(name) for account in record["language"].values()]
-        return None if None in values or not values else sum(values)
-
-    return total
+    values = [taken(account) for account in record.language.values()]
+    known = [value for value in values if value is not None]
+    return sum(known) if values and len(known) == len(values) else None
 
 
-def _complete(name: str) -> Callable[[Record], float | None]:
-    """As :func:`_sum`, for what only replies report: unknown where a call brought none."""
-    total, errors = _sum(name), _sum("errors")
-    return lambda record: None if errors(record) else total(record)
+def _answered(record: StudyEpisodeRecord, taken: Taken) -> float | None:
+    """The sum of what only replies report: unknown where a call brought none."""
+    return None if _total(record, lambda account: account.errors) else _total(record, taken)
 
 
-def _share(name: str) -> Callable[[Record], float | None]:
-    total = _sum(name)
-    return lambda record: None if (value := total(record)) is None else 100.0 * value
+def _percent(record: StudyEpisodeRecord, taken: Taken) -> float | None:
+    value = _total(record, taken)
+    return None if value is None else 100.0 * value
 
 
-def _failed(cause: str) -> Callable[[Record], float]:
-    return lambda record: 100.0 * (record["cause"] == cause)
+def _questions(record: StudyEpisodeRecord) -> float:
+    return _total(record, lambda account: account.questions) or 0.0
 
 
-def _questions(record: Record) -> float:
-    return _sum("questions")(record) or 0.0
+def _replies(record: StudyEpisodeRecord) -> float:
+    return _total(record, lambda account: account.calls - account.errors) or 0.0
 
 
-def _replies(record: Record) -> float:
-    return (_sum("calls")(record) or 0.0) - (_sum("errors")(record) or 0.0)
-
-
-def _latency(record: Record) -> float | None:
+def _latency(record: StudyEpisodeRecord) -> float | None:
     """Of all replies [s]; a backend that measures nothing says 0."""
-    return _sum("latency_s")(record) or None
+    return _total(record, lambda account: account.latency_s) or None
 
 
 MEASURES: dict[str, Measure] = {
-    "success %": Measure(lambda record: 100.0 * record["success"]["polyfold"], _one),
-    "valid at once %": Measure(_share("valid_at_once"), _questions),
-    "valid after repair %": Measure(_share("valid"), _questions),
-    "subgoal failures %": Measure(_failed("subgoal"), _one),
-    "fold-line failures %": Measure(_failed("fold line"), _one),
+    "success %": Measure(lambda record: 100.0 * record.succeeded, _one),
+    "valid at once %": Measure(lambda record: _percent(record, lambda account: account.valid_at_once), _questions),
+    "valid after repair %": Measure(lambda record: _percent(record, lambda account: account.valid), _questions),
+    "subgoal failures %": Measure(lambda record: 100.0 * (record.cause == "subgoal"), _one),
+    "fold-line failures %": Measure(lambda record: 100.0 * (record.cause == "fold line"), _one),
     "latency [s/call]": Measure(_latency, _replies, 2),
-    "tokens in": Measure(_complete("prompt_tokens"), _one, 0),
-    "tokens out": Measure(_complete("completion_tokens"), _one, 0),
-    "cost [US$]": Measure(_complete("cost"), _one, 4),
+    "tokens in": Measure(lambda record: _answered(record, lambda account: account.prompt_tokens), _one, 0),
+    "tokens out": Measure(lambda record: _answered(record, lambda account: account.completion_tokens), _one, 0),
+    "cost [US$]": Measure(lambda record: _answered(record, lambda account: account.cost), _one, 4),
 }
 """Columns of the table. Tokens and cost are those of an episode."""
 
 
-def measured(records: Sequence[Record], measure: str) -> Estimate:
+def measured(records: Sequence[StudyEpisodeRecord], measure: str) -> Estimate:
     """A measure over the episodes of one variant, with its 95 % interval from resampled episodes."""
     found = MEASURES[measure]
     return ratio([found.total(record) for record in records], [found.count(record) for record in records])
@@ -99,7 +92,7 @@ def provider_table(results: Results) -> Table:
 
     A cell that rests on fewer episodes than the row, because the others' figure is unknown, says on how many.
     """
-    rows = []
+    rows: list[list[Cell]] = []
     for variant in results.study.variants:
         records = results.of(variant)
         if records:
@@ -107,23 +100,24 @@ def provider_table(results: Results) -> Table:
     return Table(["model", "n", *MEASURES], rows, _note(results))
 
 
-def _cell(records: Sequence[Record], measure: str) -> str:
-    if measure.startswith("cost") and _is_free(records):
+def _cell(records: Sequence[StudyEpisodeRecord], measure: str) -> Cell:
+    if measure.startswith("cost") and is_free(records):
         return "free"
     found = measured(records, measure)
-    text = shown(found, MEASURES[measure].digits)
     expected = sum(MEASURES[measure].count(record) > 0 for record in records)
-    return text if found.n in (0, expected) else f"{text} (n={found.n})"
+    return Figure(found, MEASURES[measure].digits, note="" if found.n in (0, expected) else f"(n={found.n})")
 
 
-def _is_free(records: Sequence[Record]) -> bool:
-    return _said(records, "cost_sources") == ["free"] and measured(records, "cost [US$]").mean == 0.0
+def is_free(records: Sequence[StudyEpisodeRecord]) -> bool:
+    """Whether the variant's models cost nothing, as those that run on one's own machine do."""
+    sources = _said(records, lambda account: account.cost_sources)
+    return sources == ["free"] and measured(records, "cost [US$]").mean == 0.0
 
 
-def _said(records: Sequence[Record], name: str) -> list[str]:
-    """What the accounts of some episodes list under a name, each once."""
-    accounts = (account for record in records for account in record["language"].values())
-    return sorted({text for account in accounts for text in account.get(name, ())})
+def _said(records: Sequence[StudyEpisodeRecord], said: Callable[[Account], Iterable[str]]) -> list[str]:
+    """What the accounts of some episodes list, each once."""
+    accounts = (account for record in records for account in record.language.values())
+    return sorted({text for account in accounts for text in said(account)})
 
 
 def _note(results: Results) -> str:
@@ -134,17 +128,19 @@ def _note(results: Results) -> str:
         "Tokens and cost: per episode."
     )
     models = {variant: results.of(variant) for variant in results.study.variants}
-    text += _listed("Cost by", {name: _said(of, "cost_sources") for name, of in models.items()}, leave_out="free")
-    text += _listed("Answers", {name: _said(of, "origins") for name, of in models.items()}, leave_out="live")
-    unanswered = {name: sum(_is_unanswered(record) for record in of) for name, of in models.items()}
+    text += _listed(
+        "Cost by",
+        {name: _said(of, lambda account: account.cost_sources) for name, of in models.items()},
+        leave_out="free",
+    )
+    text += _listed(
+        "Answers", {name: _said(of, lambda account: account.origins) for name, of in models.items()}, leave_out="live"
+    )
+    unanswered = {name: sum(record.unanswered for record in of) for name, of in models.items()}
     if any(unanswered.values()):
         counts = ", ".join(f"{name} {count}" for name, count in unanswered.items() if count)
         text += f" Episodes without an answer, counted as no success; run the study again to ask anew: {counts}."
     return text
-
-
-def _is_unanswered(record: Record) -> bool:
-    return record["failure"] is not None and record["failure"]["stage"] == "unanswered"
 
 
 def _listed(what: str, said: Mapping[str, Iterable[str]], leave_out: str) -> str:

@@ -15,18 +15,62 @@ FORMATS = ("markdown", "html", "latex", "csv")
 
 
 @dataclass(frozen=True)
+class Figure:
+    """A cell with a figure: an estimate and how to write it.
+
+    Attributes:
+        value: mean and interval; a dash is written where there was nothing to measure.
+        digits: after the point.
+        signed: whether to write a plus, for differences.
+        note: what follows, such as on how many episodes it rests.
+    """
+
+    value: Estimate
+    digits: int = 1
+    signed: bool = False
+    note: str = ""
+
+    @property
+    def is_known(self) -> bool:
+        """Whether there was anything to measure."""
+        return not math.isnan(self.value.mean)
+
+    @property
+    def mean(self) -> str:
+        """The mean as text; a dash if there was nothing to measure."""
+        return f"{self.value.mean:{'+' if self.signed else ''}.{self.digits}f}" if self.is_known else "–"
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """The ends of the interval as text."""
+        return f"{self.value.low:.{self.digits}f}", f"{self.value.high:.{self.digits}f}"
+
+    def __str__(self) -> str:
+        interval = f" [{self.ends[0]}, {self.ends[1]}]" if self.is_known else ""
+        return f"{self.mean}{interval}" + (f" {self.note}" if self.note else "")
+
+
+Cell = str | Figure
+
+
+@dataclass(frozen=True)
 class Table:
-    """A table of text.
+    """A table of text and figures.
 
     Attributes:
         headers: column names.
-        rows: cells, each row as long as the headers.
+        cells: each row as long as the headers.
         note: what stands below: what the figures are, and on how many episodes.
     """
 
     headers: Sequence[str]
-    rows: Sequence[Sequence[str]]
+    cells: Sequence[Sequence[Cell]]
     note: str = ""
+
+    @property
+    def rows(self) -> list[list[str]]:
+        """The cells as text."""
+        return [[str(cell) for cell in row] for row in self.cells]
 
     def markdown(self) -> str:
         """A GitHub table."""
@@ -67,7 +111,4 @@ def _latex_row(cells: Sequence[str]) -> str:
 
 def shown(value: Estimate, digits: int = 1, signed: bool = False) -> str:
     """An estimate as text: ``94.0 [92.1, 95.6]``; a dash if there was nothing to measure."""
-    if math.isnan(value.mean):
-        return "–"
-    sign = "+" if signed else ""
-    return f"{value.mean:{sign}.{digits}f} [{value.low:.{digits}f}, {value.high:.{digits}f}]"
+    return str(Figure(value, digits, signed))

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import json
+from collections.abc import Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from polyfold import plugins
+from polyfold import plugins, viz
+from polyfold.api._loaders import garment as named_garment
 from polyfold.config import Experiment
 from polyfold.errors import ConfigError
 from polyfold.evaluation import find_task, judge
 from polyfold.garments import Garment
-from polyfold.logs import write_atomically
+from polyfold.logs import fold_record, transcript_lines, write_atomically
 from polyfold.rollout import run_episode
 from polyfold.types import Episode, Observation
 
@@ -50,21 +52,20 @@ def fold(
         RefusedError: if the instruction can't be understood or done; nothing is folded.
         PolyfoldError: if grounding, planning or simulation fail; ``out`` then holds what was done until then.
     """
-    from polyfold.api._loaders import garment as named_garment
-
     experiment = (experiment or Experiment()).override(components)
     garment = named_garment(garment, seed=seed, experiment=experiment) if isinstance(garment, str) else garment
     frames: list[Observation] | None = None if out is None else []
     folder = None if out is None else _prepare(Path(out))
     if observer is not None:
         plugins.observe(observer)
+    started = datetime.now(UTC)
     try:
         episode = attempt(instruction, garment, seed, experiment, task=task, frames=frames)
     finally:
         if observer is not None:
             plugins.unobserve(observer)
     if folder is not None:
-        save(episode, folder, frames or [])
+        save(episode, folder, frames or [], started)
     if episode.error is not None:
         raise episode.error
     return episode
@@ -96,15 +97,19 @@ def attempt(
     return episode
 
 
-def save(episode: Episode, folder: Path, frames: list[Observation]) -> None:
-    """Write ``episode.json``, ``transcript.jsonl``, ``filmstrip.png`` and, if there was motion, ``fold.gif``."""
-    from polyfold import viz
-    from polyfold.viz import filmstrip_of
+def save(episode: Episode, folder: Path, frames: Sequence[Observation] = (), started: datetime | None = None) -> None:
+    """Write ``episode.json``, ``transcript.jsonl``, ``filmstrip.png`` and, if there was motion, ``fold.gif``.
 
-    summary = {**episode.summary(), "out": str(folder)}
-    write_atomically(folder / "episode.json", json.dumps(summary, indent=2) + "\n")
-    episode.transcript.write(folder / "transcript.jsonl")
-    viz.save(filmstrip_of(episode), folder / "filmstrip.png")
+    Args:
+        episode: what happened.
+        folder: where to.
+        frames: pictures of the motion.
+        started: when it began, in UTC.
+    """
+    record = fold_record(episode, started, datetime.now(UTC)).model_copy(update={"out": str(folder)})
+    write_atomically(folder / "episode.json", record.model_dump_json(indent=2) + "\n")
+    write_atomically(folder / "transcript.jsonl", transcript_lines(episode.calls))
+    viz.save(viz.filmstrip_of(episode), folder / "filmstrip.png")
     if frames:
         motion = [episode.start.rgb, *(frame.rgb for frame in frames), episode.final.rgb]
         viz.gif(motion, folder / "fold.gif", fps=GIF_RATE)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from polyfold.analysis import Results, open_results
+from polyfold.logs import read_run
 from polyfold.studies import Study, evaluate
 from polyfold.viz import thumbnail
 
@@ -17,9 +18,11 @@ def run(
     address: str | None = None,
     progress: bool = True,
     pictures: str = "failed",
+    accept_change: bool = False,
 ) -> Results:
     """Run a study, or what its directory lacks of it; see :func:`polyfold.studies.evaluate`."""
-    return Results(study, evaluate(study, out, workers, engine, address, progress, pictures, thumbnail))
+    records = evaluate(study, out, workers, engine, address, progress, pictures, thumbnail, accept_change)
+    return Results(read_run(out), records)
 
 
 def open(out: str | Path) -> Results:

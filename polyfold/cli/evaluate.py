@@ -23,31 +23,37 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default="failed",
         help="small pictures for the report; failed (default) has the first episode of each task too",
     )
+    parser.add_argument(
+        "--accept-change",
+        action="store_true",
+        help="go on with a run although code, prompts or weights have changed since; the run records it",
+    )
     parser.add_argument("--garments", type=int, metavar="N", help="garments per kind instead of the study's")
     parser.add_argument("--variants", nargs="+", metavar="NAME", help="only these of the study's variants")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run what is missing and print the table."""
-    from polyfold.analysis import _results as results
-    from polyfold.studies import _study as study
+    from polyfold import api, studies
+    from polyfold.analysis import table
 
-    chosen = study.load(arguments.config)
+    study = studies.load(arguments.config)
     if arguments.garments is not None:
-        chosen = study.Study(**{**chosen.model_dump(), "garments": arguments.garments})
+        study = studies.Study(**{**study.model_dump(), "garments": arguments.garments})
     if arguments.variants is not None:
-        chosen = study.with_variants(chosen, arguments.variants)
+        study = studies.with_variants(study, arguments.variants)
     try:
-        found = results.run(
-            chosen,
+        results = api.run(
+            study,
             arguments.out,
             arguments.workers,
             arguments.engine,
             arguments.address,
             pictures=arguments.pictures,
+            accept_change=arguments.accept_change,
         )
     except KeyboardInterrupt:
         print(f"interrupted; what is finished is in {arguments.out}, run the same command to go on")
         raise
-    print(results.table(found))
+    print(table(results))
     return 0

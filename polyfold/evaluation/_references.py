@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from dataclasses import replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,44 +15,38 @@ from polyfold.config import ComponentSpec, Experiment
 from polyfold.evaluation._judging import final_mask
 from polyfold.garments import Garment
 from polyfold.geometry import Camera
-from polyfold.logs import versions
+from polyfold.logs import fingerprint
+from polyfold.logs._host import processor
 from polyfold.rollout import run_episode
 from polyfold.tasks import Task, fold_lines
 from polyfold.tasks._ideal import fold_step_by_step
 from polyfold.types import Outcome, SimState
 
+MOVED = 0.020
+"""A reference in which no particle moves further than this [m] asks for nothing to be done."""
 
+
+@dataclass(frozen=True, eq=False)
 class Reference:
-    """The oracle's run: where every particle lay after each fold, and the final silhouette.
+    """What counts as right: where every particle lay after each fold, and the final silhouette.
 
     Attributes:
         outcome: start and end for metrics.
         after: state after each step.
     """
 
-    def __init__(self, outcome: Outcome, after: tuple[SimState, ...]) -> None:
-        self.outcome = outcome
-        self.after = after
+    outcome: Outcome
+    after: tuple[SimState, ...]
+
+    def is_idle(self) -> bool:
+        """Whether nothing moves, so that doing nothing is right."""
+        travel = np.linalg.norm(self.outcome.end.positions - self.outcome.start.positions, axis=1)
+        return bool((travel <= MOVED).all())
 
 
 def cache_folder() -> Path:
     """Where references are kept: ``$POLYFOLD_CACHE``, else ``~/.cache/polyfold``."""
     return Path(os.environ.get("POLYFOLD_CACHE") or Path.home() / ".cache" / "polyfold")
-
-
-@lru_cache(maxsize=64)
-def _simulator_digest(module: str) -> str:
-    """A hash of the simulator's source, so that a change of physics never meets an old reference."""
-    from importlib.util import find_spec
-
-    spec = find_spec(module.partition(".")[0])
-    assert spec is not None
-    assert spec.submodule_search_locations is not None
-    digest = hashlib.sha256()
-    for folder in spec.submodule_search_locations:
-        for path in sorted(Path(folder).rglob("*.py")):
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
 
 
 def reference_for(task: Task, garment: Garment, seed: int, simulator: ComponentSpec) -> Reference:
@@ -66,11 +59,10 @@ def reference_for(task: Task, garment: Garment, seed: int, simulator: ComponentS
         simulator: the simulator and its parameters; one that injects faults or noise says in ``faultless(config)``
             which simulator to use instead, as a name and parameters.
     """
-    simulator = _faultless(simulator)
-    path = cache_folder() / "references" / f"{_key(task, garment, seed, simulator)}.npz"
+    experiment = Experiment.of(agent="oracle", simulator=_faultless(simulator))
+    path = cache_folder() / "references" / f"{_key(task, garment, seed, experiment)}.npz"
     if path.exists():
         return _read(path)
-    experiment = Experiment.of(agent="oracle", simulator=simulator)
     episode = run_episode(experiment, garment, "", seed, task=task)
     if episode.error is not None:
         raise episode.error
@@ -103,15 +95,15 @@ def _faultless(simulator: ComponentSpec) -> ComponentSpec:
     return ComponentSpec(name=name, params=params)
 
 
-def _key(task: Task, garment: Garment, seed: int, simulator: ComponentSpec) -> str:
-    module = str(plugins.find("simulators", simulator.name).target)
+def _key(task: Task, garment: Garment, seed: int, experiment: Experiment) -> str:
+    """What the oracle's result depends on: the same fingerprint guards resumed runs."""
     content = {
         "steps": task.model_dump(mode="json")["steps"],
         "mesh": hashlib.sha256(garment.mesh.vertices.tobytes() + garment.mesh.triangles.tobytes()).hexdigest(),
         "seed": seed,
-        "simulator": simulator.model_dump(mode="json"),
-        "source": _simulator_digest(module.partition(":")[0]),
-        "numba": versions().get("numba"),
+        "experiment": experiment.model_dump(mode="json"),
+        "fingerprint": fingerprint([experiment], [("garments", garment.kind)], commits=False).digest(),
+        "processor": processor(),
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:40]
 

@@ -1,119 +1,204 @@
 """Run directories: append-only, one finished episode a line, safe to kill at any moment and to resume.
 
-``run.json`` says what the run is; ``episodes.jsonl`` holds one finished episode a line, appended and flushed to disk. A
-last line that a kill cut in half is dropped when the directory is opened again.
+``run.json`` says what the run is (:class:`RunRecord`); ``episodes.jsonl`` holds one finished episode a line, appended and
+flushed to disk. A last line that a kill cut in half is dropped when the directory is opened again.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
-import os
-import platform
-import re
-from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
-from polyfold.errors import ConfigError
+from pydantic import BaseModel, ValidationError
 
-SCHEMA_VERSION = 1
+from polyfold.errors import ConfigError, validation_problem
+from polyfold.logs import _schema_1
+from polyfold.logs._files import write_atomically
+from polyfold.logs._fingerprint import Fingerprint
+from polyfold.logs._host import this_host
+from polyfold.logs._json_lines import JsonLines
+from polyfold.logs._records import (
+    SCHEMA_VERSION,
+    ChangeRecord,
+    KeyedRecord,
+    MetricRecord,
+    RunRecord,
+    StudyEpisodeRecord,
+    ThresholdRecord,
+)
 
+Record = TypeVar("Record", bound=KeyedRecord)
+Model = TypeVar("Model", bound=BaseModel)
 
-def versions() -> dict[str, str]:
-    """Versions that a result depends on."""
-    found = {"python": platform.python_version()}
-    for package in ("polyfold", "numpy", "scipy", "numba", "opencv-python-headless", "shapely", "torch"):
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            continue
-    return found
-
-
-def write_atomically(path: Path, content: str | bytes) -> None:
-    """Write a file so that a kill leaves either the old content or the new."""
-    scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    scratch.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
-    scratch.replace(path)
-
-
-def picture_path(key: str) -> str:
-    """Where an episode's picture lies in its run directory, as a relative path that every file system takes."""
-    readable = re.sub(r"[^A-Za-z0-9.-]+", "_", key).strip("._")[:80]
-    return f"pictures/{readable}-{hashlib.sha256(key.encode()).hexdigest()[:8]}.webp"
+DESCRIPTION, EPISODES = "run.json", "episodes.jsonl"
 
 
-class RunDirectory:
+class RunDirectory(Generic[Record]):
     """A directory of results that belong to one configuration.
 
     Args:
         path: the directory; created if needed.
-        config: plain data that defines the run; a directory made with another one is refused.
+        asked: plain data that defines the run; a directory made with another one is refused.
+        record_type: the model of its records.
+        fingerprint: what results depend on besides; see :meth:`guard`.
+        metrics: how each metric is shown.
+        criteria: bounds of each success criterion, the run's own first.
 
     Raises:
-        ConfigError: if the directory belongs to another configuration or an unknown schema version.
+        ConfigError: if the directory belongs to another configuration or another schema version.
     """
 
-    def __init__(self, path: str | Path, config: Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        path: str | Path,
+        asked: Mapping[str, Any],
+        record_type: type[Record],
+        fingerprint: Fingerprint | None = None,
+        metrics: Mapping[str, MetricRecord] | None = None,
+        criteria: Mapping[str, tuple[ThresholdRecord, ...]] | None = None,
+    ) -> None:
         self.path = Path(path)
         self.path.mkdir(parents=True, exist_ok=True)
-        self._episodes = self.path / "episodes.jsonl"
-        self._claim(json.loads(json.dumps(config)))
-        self._drop_half_written_line()
-
-    def _claim(self, config: dict[str, Any]) -> None:
-        description = self.path / "run.json"
-        if not description.exists():
-            content = {"schema_version": SCHEMA_VERSION, "config": config, "versions": versions()}
-            write_atomically(description, json.dumps(content, indent=2) + "\n")
-            return
-        found = json.loads(description.read_text("utf-8"))
-        if found.get("schema_version") != SCHEMA_VERSION:
-            raise ConfigError(
-                f"{description} has schema version {found.get('schema_version')}, this is {SCHEMA_VERSION}; "
-                "use the polyfold version that made it, or another directory"
+        self._record_type = record_type
+        self._lines = JsonLines(self.path / EPISODES)
+        asked = json.loads(json.dumps(asked))
+        if (self.path / DESCRIPTION).exists():
+            self.run = self._claimed(asked)
+        else:
+            self.run = RunRecord(
+                asked=asked,
+                started=datetime.now(UTC),
+                fingerprint=fingerprint,
+                host=this_host(),
+                metrics=dict(metrics or {}),
+                criteria=dict(criteria or {}),
             )
-        if found["config"] != config:
+            self._describe()
+        self._lines.repair()
+
+    def _claimed(self, asked: dict[str, Any]) -> RunRecord:
+        schema = _content(self.path / DESCRIPTION).get("schema_version")
+        if schema == _schema_1.SCHEMA_VERSION:
             raise ConfigError(
-                f"{self.path} holds a run with another configuration ({_difference(found['config'], config)}); "
+                f"{self.path} holds a run of an older version, which can be read and no longer resumed; "
+                "use another directory"
+            )
+        run = read_run(self.path)
+        if run.asked != asked:
+            changed = "; ".join(_changes(run.asked, asked))
+            raise ConfigError(
+                f"{self.path} holds a run with another configuration ({changed}); "
                 "use another directory, or the old configuration"
             )
+        return run
 
-    def _drop_half_written_line(self) -> None:
-        if not self._episodes.exists():
+    def _describe(self) -> None:
+        write_atomically(self.path / DESCRIPTION, self.run.model_dump_json(indent=2) + "\n")
+
+    def guard(self, fingerprint: Fingerprint, accept_change: bool = False) -> None:
+        """Make sure that what is added now was made by what made the rest.
+
+        Args:
+            fingerprint: what new results depend on.
+            accept_change: go on although it differs from the run's; that is recorded.
+
+        Raises:
+            ConfigError: if it differs, with the difference.
+        """
+        finished = len(self.records())
+        before = self.run.changes[-1].fingerprint if self.run.changes else self.run.fingerprint
+        differences = before.differences(fingerprint) if before is not None else ("it was not recorded",)
+        if not differences:
             return
-        content = self._episodes.read_bytes()
-        complete = content[: content.rfind(b"\n") + 1]
-        if len(complete) != len(content):
-            with self._episodes.open("r+b") as file:
-                file.truncate(len(complete))
+        if not finished:
+            self.run = self.run.model_copy(update={"fingerprint": fingerprint, "changes": ()})
+        elif accept_change:
+            change = ChangeRecord(
+                when=datetime.now(UTC), differences=differences, fingerprint=fingerprint, episodes=finished
+            )
+            self.run = self.run.model_copy(update={"changes": (*self.run.changes, change)})
+        else:
+            raise ConfigError(
+                f"{self.path} holds {finished} episodes that were made by something else ({'; '.join(differences)}); "
+                "use another directory, or go on knowingly with --accept-change (accept_change=True), "
+                "which the run then records"
+            )
+        self._describe()
 
-    def append(self, key: str, record: Mapping[str, Any]) -> None:
-        """Add a finished episode under a unique key; it is on disk when this returns."""
-        with self._episodes.open("a", encoding="utf-8") as file:
-            file.write(json.dumps({"key": key, **record}) + "\n")
-            file.flush()
-            os.fsync(file.fileno())
+    def append(self, record: Record) -> None:
+        """Add a finished episode; it is on disk when this returns."""
+        self._lines.append(record.model_dump(mode="json"))
 
-    def episodes(self) -> dict[str, dict[str, Any]]:
-        """Finished episodes by key, in the order they finished."""
-        return {record["key"]: record for record in read_episodes(self.path)}
+    def records(self) -> dict[str, Record]:
+        """Finished episodes by key, the last of each, in the order in which their keys first finished."""
+        found: dict[str, Record] = {}
+        for record in _read(self._lines, self._record_type):
+            found[record.key] = record
+        return found
 
 
-def read_episodes(path: str | Path) -> list[dict[str, Any]]:
-    """The finished episodes of a run directory, the last try of each.
+def read_run(path: str | Path) -> RunRecord:
+    """What a run directory's run is. Raises ConfigError if there is none, or of an unknown schema version."""
+    description = Path(path) / DESCRIPTION
+    if not description.exists():
+        raise ConfigError(f"{path} is no run directory (it has no {DESCRIPTION}); give the --out of an evaluation")
+    content = _content(description)
+    if content.get("schema_version") == _schema_1.SCHEMA_VERSION:
+        return _schema_1.run_record(content)
+    if content.get("schema_version") != SCHEMA_VERSION:
+        raise ConfigError(
+            f"{description} has schema version {content.get('schema_version')}, this is {SCHEMA_VERSION}; "
+            "use the polyfold version that made it, or another directory"
+        )
+    return _validated(RunRecord, content, str(description))
+
+
+def read_episodes(path: str | Path) -> list[StudyEpisodeRecord]:
+    """The finished episodes of a study's run directory, the last try of each.
 
     The directory may be running still: a half-written last line is left out.
+
+    Raises:
+        ConfigError: if there is no run directory, or a line is no record of an episode.
     """
-    episodes = Path(path) / "episodes.jsonl"
-    if not episodes.exists():
-        return []
-    records = [json.loads(line) for line in episodes.read_text("utf-8").split("\n")[:-1]]
-    return list({record["key"]: record for record in records}.values())
+    read_run(path)
+    lines = JsonLines(Path(path) / EPISODES)
+    if _content(Path(path) / DESCRIPTION)["schema_version"] == _schema_1.SCHEMA_VERSION:
+        records = [_schema_1.episode_record(line) for line in lines.read()]
+    else:
+        records = list(_read(lines, StudyEpisodeRecord))
+    return list({record.key: record for record in records}.values())
 
 
-def _difference(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
-    changed = sorted(key for key in {*old, *new} if old.get(key) != new.get(key))
-    return "; ".join(f"{key}: {old.get(key)!r} there, {new.get(key)!r} here" for key in changed)
+def _read(lines: JsonLines, record_type: type[Record]) -> Iterator[Record]:
+    for number, line in enumerate(lines.read(), 1):
+        yield _validated(record_type, line, f"{lines.path}, line {number}")
+
+
+def _validated(model: type[Model], content: Mapping[str, Any], where: str) -> Model:
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        raise ConfigError(f"{where} {validation_problem(error)}") from error
+
+
+def _content(description: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(description.read_text("utf-8"))
+    except ValueError as error:
+        raise ConfigError(f"{description} is not JSON ({error}); restore it, or use another directory") from error
+    if not isinstance(content, dict):
+        raise ConfigError(f"{description} describes no run; restore it, or use another directory")
+    return content
+
+
+def _changes(old: Any, new: Any, place: str = "") -> Iterator[str]:
+    """Settings that differ, each by its dotted path."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        for name in sorted({*old, *new}):
+            yield from _changes(old.get(name), new.get(name), f"{place}.{name}" if place else name)
+    elif old != new:
+        yield f"{place}: {old!r} there, {new!r} here"

@@ -17,6 +17,8 @@ from polyfold.plugins._host import (
     unobserve,
     unregister,
 )
+from polyfold.plugins._inspection import files_of, parameter_names, parameters, prompts_of
+from polyfold.plugins.hookspecs import plural, singular
 
 __all__ = [
     "Component",
@@ -27,13 +29,19 @@ __all__ = [
     "component_class",
     "create",
     "create_chosen",
+    "files_of",
     "find",
     "names",
     "notify",
     "observe",
+    "parameter_names",
+    "parameters",
+    "plural",
     "portable",
+    "prompts_of",
     "refresh",
     "register",
+    "singular",
     "unobserve",
     "unregister",
 ]

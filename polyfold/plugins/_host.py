@@ -252,6 +252,15 @@ def create(kind: str, name: str, params: Mapping[str, Any] | None = None, **comp
         PluginError: see :func:`find`.
         ConfigError: if a parameter is unknown or has an impossible value; the message names it.
     """
+    cls, config = configured(kind, name, params)
+    return cls(**components) if config is None else cls(config, **components)
+
+
+def configured(kind: str, name: str, params: Mapping[str, Any] | None = None) -> tuple[type, Any]:
+    """The class behind a name and its ``Config`` with the given values, as :func:`create` takes them.
+
+    The second is None for a class without parameters.
+    """
     name, has_argument, argument = name.partition(":")
     cls = component_class(kind, name)
     values = dict(params or {})
@@ -263,13 +272,13 @@ def create(kind: str, name: str, params: Mapping[str, Any] | None = None, **comp
             )
         values[field] = argument
     config_class = getattr(cls, "Config", None)
-    if config_class is None:
-        if values:
-            raise ConfigError(
-                f"the {hookspecs.singular(kind)} {name!r} has no parameters; remove {', '.join(sorted(values))}"
-            )
-        return cls(**components)
-    return cls(_configure(config_class, values, f"{hookspecs.singular(kind)} {name!r}"), **components)
+    if config_class is not None:
+        return cls, _configure(config_class, values, f"{hookspecs.singular(kind)} {name!r}")
+    if values:
+        raise ConfigError(
+            f"the {hookspecs.singular(kind)} {name!r} has no parameters; remove {', '.join(sorted(values))}"
+        )
+    return cls, None
 
 
 def create_chosen(experiment: Experiment, field: str) -> Any:

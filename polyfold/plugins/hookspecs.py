@@ -49,6 +49,7 @@ KINDS = (
     "garments",
     "tasks",
     "metrics",
+    "criteria",
 )
 """The kinds of component, plural, in the order of the data flow."""
 
@@ -57,7 +58,7 @@ Register = Callable[..., None]
 
 def singular(kind: str) -> str:
     """``policies`` to ``policy``: what one component of a kind is called, and its field in an experiment."""
-    return "policy" if kind == "policies" else kind.removesuffix("s")
+    return {"policies": "policy", "criteria": "criterion"}.get(kind, kind.removesuffix("s"))
 
 
 def plural(field: str) -> str:
@@ -124,6 +125,11 @@ def register_tasks(register: Register) -> None:
 @hookspec
 def register_metrics(register: Register) -> None:
     """Register metrics: :class:`polyfold.interfaces.Metric`, final state and reference to a number."""
+
+
+@hookspec
+def register_criteria(register: Register) -> None:
+    """Register success criteria: :class:`polyfold.plugins.interfaces.SuccessCriterion`, bounds on metrics."""
 
 
 @hookspec

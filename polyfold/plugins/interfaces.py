@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from polyfold.garments import Garment
 from polyfold.geometry import FoldLine
 from polyfold.polygon import Template
-from polyfold.types import Action, ActionMap, Decision, Observation, Outcome, Scene, SimState, Subgoal
+from polyfold.types import Action, ActionMap, Decision, Observation, Outcome, Scene, SimState, Subgoal, Threshold
 from polyfold.types._conversation import Message, Reply
 
 
@@ -225,3 +226,28 @@ class Metric(Protocol):
 
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
         """The value, in ``unit``; NaN if there is nothing to measure."""
+
+
+@runtime_checkable
+class SuccessCriterion(Protocol):
+    """What counts as success: bounds on metrics that all must hold against one and the same reference."""
+
+    thresholds: ClassVar[Sequence[Threshold]]
+
+
+@runtime_checkable
+class ReadsFiles(Protocol):
+    """A component that reads files besides its source: weights, cassettes. They belong to a run's fingerprint."""
+
+    @classmethod
+    def files_read(cls, config: Any) -> Sequence[Path]:
+        """The files that it reads with these parameters."""
+
+
+@runtime_checkable
+class ReadsPrompts(Protocol):
+    """A component that asks a language model with prompt files. They belong to a run's fingerprint."""
+
+    @classmethod
+    def prompts_read(cls, config: Any) -> Sequence[str]:
+        """The prompts that it may use with these parameters, each as ``role@version``."""

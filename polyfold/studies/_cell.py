@@ -1,13 +1,13 @@
-"""One episode of a study: run, compare with the oracle, say why it failed. The unit of work that travels to workers."""
+"""One episode of a study: run, compare with references, say why it failed. The unit of work that travels to workers."""
 
 from __future__ import annotations
 
-import math
 import resource
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from datetime import UTC, datetime
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,20 +15,23 @@ from numpy.typing import NDArray
 from polyfold import plugins
 from polyfold.errors import SimulationError
 from polyfold.evaluation import (
-    PRESETS,
+    Comparison,
     Reference,
     accepted_tasks,
     attribute,
     attribute_open,
+    compare_end,
+    criteria,
     final_mask,
     first_mask,
     ideal_reference,
-    needed_scale,
     reference_for,
-    succeeded,
     suite,
 )
 from polyfold.garments import Garment
+from polyfold.logs import StudyEpisodeRecord
+from polyfold.logs._records import BoundsRecord
+from polyfold.logs._writing import episode_fields, finite
 from polyfold.plugins.interfaces import Goal
 from polyfold.rollout import build_agent, run_episode
 from polyfold.rollout._loop import GUIDED, PRIVILEGED
@@ -37,27 +40,73 @@ from polyfold.studies._study import Study, experiment_of
 from polyfold.tasks import OpenTask, Task, fold_lines, measure
 from polyfold.types import Decision, Episode, Failure, Observation, Outcome, Subgoal
 
-Record = dict[str, Any]
+PICTURES = ("none", "failed", "all")
+"""Which episodes get a picture; ``failed`` includes the first episode of each task, so that successes are seen too."""
+
+Render = Callable[[Episode, NDArray[np.bool_] | None], bytes]
+"""Draws an episode, over its end the outline of the wanted silhouette, bool, shape (H, W), if there is one."""
+
+Scored = tuple[StudyEpisodeRecord, bytes | None]
+"""A scored episode and its picture, if one was asked for; it travels back so that workers need not share a disk."""
 
 
-@lru_cache(maxsize=8)
-def _garment(kind: str, seed: int, edge_length: float) -> Garment:
-    return plugins.create("garments", kind).generate(seed, edge_length)
+def evaluate_cell(study: Study, cell: Cell) -> StudyEpisodeRecord:
+    """Run one episode and score it.
+
+    The pose depends on the garment's seed alone, so that all variants and wordings start from the same picture as the
+    oracle. A goal without given folds (:class:`polyfold.tasks.OpenTask`) is compared with the nearest of the tasks that
+    it accepts, and its record's ``done`` says which of its own bounds the end keeps.
+    """
+    return evaluate_with_picture(study, cell, "none", None)[0]
+
+
+def evaluate_with_picture(study: Study, cell: Cell, pictures: str, render: Render | None) -> Scored:
+    """As :func:`evaluate_cell`, with the episode's small picture if ``pictures`` asks for one.
+
+    Args:
+        study, cell: what to run.
+        pictures: one of :data:`PICTURES`.
+        render: draws it; None for no pictures.
+    """
+    started = datetime.now(UTC)
+    entry = suite(study.suite).entry(cell.task)
+    accepted = (entry,) if isinstance(entry, Task) else accepted_tasks(study.suite, entry)
+    episode = _run(study, cell, entry, accepted)
+    try:
+        references = _references(study, cell, accepted, episode)
+    except SimulationError as error:
+        failure = Failure("infrastructure", f"the oracle failed: {error}")
+        references, episode = [], replace(episode, failure=failure)
+    end = Outcome(episode.initial_state, episode.final_state, final_mask(episode))
+    metrics = {name: plugins.create("metrics", name, study.metrics.get(name)) for name in plugins.names("metrics")}
+    comparison = compare_end(end, references, metrics, criteria(study.criteria))
+    record = _record(study, cell, _Judged(entry, episode, end.mask, comparison), started)
+    if render is None or not _is_pictured(study, cell, record, pictures):
+        return record, None
+    nearest = comparison.nearest
+    return record, render(episode, None if nearest is None else nearest.outcome.mask)
+
+
+def _is_pictured(study: Study, cell: Cell, record: StudyEpisodeRecord, pictures: str) -> bool:
+    first = cell.garment_seed == study.first_seed and cell.wording == 0
+    return pictures == "all" or (pictures == "failed" and (first or not record.success[study.criteria[0]]))
 
 
 @dataclass(frozen=True, eq=False)
-class _Comparison:
-    """An episode beside its references.
+class _Judged:
+    """An episode with what was found out about its end.
 
     Attributes:
-        values: metrics against the nearest reference, NaN without one.
-        nearest: the reference whose thresholds are met most easily; None without any.
-        success: whether all thresholds of a preset hold against one and the same reference, by preset.
+        entry: what was asked for.
+        episode: what happened.
+        mask: the cloth in the last picture, bool, shape (H, W).
+        comparison: the end beside its references.
     """
 
-    values: Mapping[str, float]
-    nearest: Reference | None
-    success: Mapping[str, bool]
+    entry: Task | OpenTask
+    episode: Episode
+    mask: NDArray[np.bool_]
+    comparison: Comparison
 
 
 class _Idle:
@@ -72,51 +121,9 @@ class _Idle:
         return None
 
 
-def evaluate_cell(study: Study, cell: Cell) -> Record:
-    """Run one episode and score it; plain data.
-
-    The pose depends on the garment's seed alone, so that all variants and wordings start from the same picture as the
-    oracle. A goal without given folds (:mod:`polyfold.goals`) is compared with the nearest of the tasks that it
-    accepts, and its record's ``done`` says which of its own bounds the end keeps.
-    """
-    return _evaluated(study, cell)[0]
-
-
-PICTURES = ("none", "failed", "all")
-"""Which episodes get a picture; ``failed`` includes the first episode of each task, so that successes are seen too."""
-
-Render = Callable[[Episode, NDArray[np.bool_] | None], bytes]
-"""Draws an episode, over its end the outline of the wanted silhouette, bool, shape (H, W), if there is one."""
-
-
-def evaluate_with_picture(study: Study, cell: Cell, pictures: str, render: Render) -> tuple[Record, bytes | None]:
-    """As :func:`evaluate_cell`, with the episode's small picture if ``pictures`` asks for one.
-
-    The picture travels back with the record, so that workers need not share a file system.
-
-    Args:
-        study, cell: what to run.
-        pictures: one of :data:`PICTURES`.
-        render: draws it.
-    """
-    record, episode, nearest = _evaluated(study, cell)
-    first = cell.garment_seed == study.first_seed and cell.wording == 0
-    if pictures == "all" or (pictures == "failed" and (first or not record["success"]["polyfold"])):
-        return record, render(episode, None if nearest is None else nearest.outcome.mask)
-    return record, None
-
-
-def _evaluated(study: Study, cell: Cell) -> tuple[Record, Episode, Reference | None]:
-    entry = suite(study.suite).entry(cell.task)
-    accepted = (entry,) if isinstance(entry, Task) else accepted_tasks(study.suite, entry)
-    episode = _run(study, cell, entry, accepted)
-    try:
-        references = _references(study, cell, accepted, episode)
-    except SimulationError as error:
-        failure = Failure("infrastructure", f"the oracle failed: {error}")
-        references, episode = [], replace(episode, failure=failure)
-    comparison = _compare(study, episode, references)
-    return _record(cell, entry, episode, comparison), episode, comparison.nearest
+@lru_cache(maxsize=8)
+def _garment(kind: str, seed: int, edge_length: float) -> Garment:
+    return plugins.create("garments", kind).generate(seed, edge_length)
 
 
 def _run(study: Study, cell: Cell, entry: Task | OpenTask, accepted: Sequence[Task]) -> Episode:
@@ -128,7 +135,7 @@ def _run(study: Study, cell: Cell, entry: Task | OpenTask, accepted: Sequence[Ta
     if accepted or not agent.requires & GUIDED:
         task = accepted[0] if accepted else None
         return run_episode(
-            experiment, garment, instruction, cell.garment_seed, agent=agent, task=task, agent_seed=cell.seed
+            experiment, garment, instruction, cell.garment_seed, agent=agent, task=task, agent_seed=cell.agent_seed
         )
     idle = run_episode(experiment, garment, instruction, cell.garment_seed, agent=_Idle())
     failure = Failure(
@@ -146,79 +153,59 @@ def _references(study: Study, cell: Cell, accepted: Sequence[Task], episode: Epi
     return [reference_for(task, episode.garment, cell.garment_seed, simulator) for task in accepted]
 
 
-def _compare(study: Study, episode: Episode, references: Sequence[Reference]) -> _Comparison:
-    if not references:
-        return _Comparison(dict.fromkeys(plugins.names("metrics"), math.nan), None, dict.fromkeys(PRESETS, False))
-    result = Outcome(episode.initial_state, episode.final_state, final_mask(episode))
-    metrics = {name: plugins.create("metrics", name, study.metrics.get(name)) for name in plugins.names("metrics")}
-    scores = [
-        {name: metric.score(result, [reference.outcome]) for name, metric in metrics.items()}
-        for reference in references
-    ]
-    nearest = min(range(len(scores)), key=lambda index: needed_scale(scores[index]))
-    success = {preset: any(succeeded(values, preset) for values in scores) for preset in PRESETS}
-    return _Comparison(scores[nearest], references[nearest], success)
-
-
-def _record(cell: Cell, entry: Task | OpenTask, episode: Episode, comparison: _Comparison) -> Record:
-    done = _done(entry, episode)
-    reached = {preset: holds or bool(done and done["holds"]) for preset, holds in comparison.success.items()}
-    success = {preset: episode.failure is None and holds for preset, holds in reached.items()}
-    return {
-        "variant": cell.variant,
-        "task": cell.task,
-        "type": entry.type,
-        "split": entry.split if isinstance(entry, Task) else None,
-        "steps_wanted": len(entry.steps) if isinstance(entry, Task) else None,
-        "garment": cell.garment,
-        "garment_seed": cell.garment_seed,
-        "wording": cell.wording,
-        "instruction": episode.instruction,
-        "subgoals": [subgoal.text for subgoal in episode.subgoals],
-        "steps": len(episode.final_attempts()),
-        "retries": sum(step.retry for step in episode.steps),
-        "values_picks": any(step.action_map is not None for step in episode.steps),
-        "metrics": {name: _number(value) for name, value in comparison.values.items()},
-        "done": done,
-        "step_errors_mm": _step_errors(episode, comparison.nearest),
-        "success": success,
-        "failure": None if episode.failure is None else vars(episode.failure),
-        "cause": None if success["polyfold"] else _cause(episode, entry, comparison.nearest),
-        "privileged": episode.privileged,
-        "language": episode.transcript.accounts(),
-        "seconds": {stage: round(spent, 4) for stage, spent in episode.seconds.items()},
-        "peak_memory_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
+def _record(study: Study, cell: Cell, judged: _Judged, started: datetime) -> StudyEpisodeRecord:
+    entry, episode, comparison = judged.entry, judged.episode, judged.comparison
+    done = _done(judged)
+    success = {
+        name: episode.failure is None and (holds or (done is not None and done.holds))
+        for name, holds in comparison.success.items()
     }
+    return StudyEpisodeRecord(
+        **episode_fields(episode, started, datetime.now(UTC), keep_messages=False),
+        agent_seed=cell.agent_seed,
+        task=cell.task,
+        key=cell.key,
+        variant=cell.variant,
+        factors=study.factors.get(cell.variant, {}),
+        type=entry.type,
+        split=entry.split if isinstance(entry, Task) else None,
+        steps_wanted=len(entry.steps) if isinstance(entry, Task) else None,
+        wording=cell.wording,
+        metrics={name: finite(value, 4) for name, value in comparison.values.items()},
+        done=done,
+        step_errors_mm=_step_errors(episode, comparison.nearest),
+        success=success,
+        cause=None if success[study.criteria[0]] else _cause(judged),
+        reference_idle=comparison.nearest is not None and comparison.nearest.is_idle(),
+        peak_memory_mb=round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
+    )
 
 
-def _done(entry: Task | OpenTask, episode: Episode) -> Record | None:
+def _done(judged: _Judged) -> BoundsRecord | None:
     """What a goal's own bounds say about the end; None where it has none."""
-    if isinstance(entry, Task) or entry.done is None:
+    if isinstance(judged.entry, Task) or judged.entry.done is None:
         return None
-    measured = measure(final_mask(episode), first_mask(episode), len(episode.final_attempts()))
-    failing = entry.done.failing(measured)
+    measured = measure(judged.mask, first_mask(judged.episode), len(judged.episode.final_attempts()))
+    failing = judged.entry.done.failing(measured)
     values = {name: round(value, 4) if isinstance(value, float) else value for name, value in vars(measured).items()}
-    return {"holds": not failing, "failing": list(failing), "measured": values}
+    return BoundsRecord(holds=not failing, failing=tuple(failing), measured=values)
 
 
-def _cause(episode: Episode, entry: Task | OpenTask, reference: Reference | None) -> str:
-    if isinstance(entry, OpenTask):
-        return attribute_open(episode, final_mask(episode))
-    if reference is None:
+def _cause(judged: _Judged) -> str:
+    episode, nearest = judged.episode, judged.comparison.nearest
+    if isinstance(judged.entry, OpenTask):
+        return attribute_open(episode, judged.mask)
+    if nearest is None:
         return "infrastructure"
-    return attribute(episode, fold_lines(entry, episode.initial_state.keypoint_pixels()), reference)
+    return attribute(episode, fold_lines(judged.entry, episode.initial_state.keypoint_pixels()), nearest)
 
 
-def _step_errors(episode: Episode, reference: Reference | None) -> list[float | None]:
+def _step_errors(episode: Episode, reference: Reference | None) -> tuple[float | None, ...]:
     """Mean particle error [mm] after each of the episode's own steps, where the reference has such a step."""
     if reference is None:
-        return []
+        return ()
     errors = []
     for step, wanted in zip(episode.final_attempts(), reference.after, strict=False):
         distance = np.linalg.norm(step.after.positions - wanted.positions, axis=1)
-        errors.append(_number(1000.0 * float(distance.mean())))
-    return errors
-
-
-def _number(value: float) -> float | None:
-    return round(float(value), 4) if math.isfinite(value) else None
+        errors.append(finite(1000.0 * float(distance.mean()), 4))
+    return tuple(errors)

@@ -8,22 +8,31 @@ import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from polyfold.errors import ConfigError
+from polyfold import plugins
+from polyfold.errors import ConfigError, did_you_mean
 from polyfold.evaluation import suite
-from polyfold.studies._study import Study, _nearest
+from polyfold.studies._study import Study
 from polyfold.tasks import OpenTask, Task
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One episode of a study, by names alone, so that it travels to any worker."""
+    """One episode of a study, by names alone, so that it travels to any worker.
+
+    Attributes:
+        variant, task: names within the study and its suite.
+        garment: kind of garment.
+        garment_seed: picks the garment, and how it lies on the table: the same for every variant and wording.
+        wording: which of the task's sentences is said.
+        agent_seed: decides the agent's random choices: the same for every variant.
+    """
 
     variant: str
     task: str
     garment: str
     garment_seed: int
     wording: int
-    seed: int
+    agent_seed: int
 
     @property
     def key(self) -> str:
@@ -33,10 +42,14 @@ class Cell:
 
 def _check_metrics(study: Study) -> None:
     """Raises ConfigError or PluginError if parameters are given to a metric that has none or does not exist."""
-    from polyfold import plugins
-
     for name, params in study.metrics.items():
         plugins.create("metrics", name, params)
+
+
+def _agent_seed(study: Study, task: Task | OpenTask, garment_seed: int, wording: int) -> int:
+    """A hash of run, task, garment and wording: no two episodes of a variant share it, and no order matters."""
+    name = f"{study.seed}/{task.id}/{garment_seed}/{wording}"
+    return int.from_bytes(hashlib.sha256(name.encode()).digest()[:4], "big")
 
 
 def cells(study: Study) -> Iterator[Cell]:
@@ -47,8 +60,7 @@ def cells(study: Study) -> Iterator[Cell]:
         for task, variant in itertools.product(chosen, study.variants):
             garment_seed = study.first_seed + index
             for wording in _wordings(study, task, index):
-                name = f"{study.seed}/{task.id}/{garment_seed}/{wording}"
-                seed = int.from_bytes(hashlib.sha256(name.encode()).digest()[:4], "big")
+                seed = _agent_seed(study, task, garment_seed, wording)
                 yield Cell(variant, task.id, task.garment, garment_seed, wording, seed)
 
 
@@ -57,7 +69,7 @@ def _chosen_tasks(study: Study) -> list[Task | OpenTask]:
     for pattern in study.tasks:
         if not any(fnmatch.fnmatch(task.id, pattern) for task in tasks):
             raise ConfigError(
-                f"no task of {study.suite!r} matches {pattern!r}; {_nearest(pattern, [task.id for task in tasks])}"
+                f"no task of {study.suite!r} matches {pattern!r}; {did_you_mean(pattern, [task.id for task in tasks])}"
             )
     chosen = [task for task in tasks if _is_chosen(study, task)]
     if not chosen:

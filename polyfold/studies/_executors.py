@@ -10,13 +10,10 @@ from polyfold import plugins
 from polyfold.errors import ConfigError
 from polyfold.studies._cells import Cell
 
-Record = dict[str, Any]
-
-
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 
 
-Outcome = tuple[Record, bytes | None]
+Outcome = Any
 
 
 Job = Callable[[Cell], Outcome]

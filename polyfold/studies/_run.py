@@ -2,7 +2,7 @@
 
 A finished episode is on disk before the next is waited for, so killing a run at any moment loses at most what was in
 flight, and running it again does only what is missing, and again what failed for lack of an answer by the language
-model.
+model. A run does not go on with changed code, prompts or weights unless that is asked for.
 """
 
 from __future__ import annotations
@@ -14,10 +14,20 @@ from pathlib import Path
 
 from polyfold import plugins
 from polyfold.errors import ConfigError
-from polyfold.logs import RunDirectory, picture_path, write_atomically
+from polyfold.evaluation import criteria
+from polyfold.logs import (
+    Fingerprint,
+    MetricRecord,
+    RunDirectory,
+    StudyEpisodeRecord,
+    ThresholdRecord,
+    fingerprint,
+    picture_path,
+    write_atomically,
+)
 from polyfold.studies._cell import PICTURES, Render, evaluate_with_picture
 from polyfold.studies._cells import Cell, cells
-from polyfold.studies._executors import Record, Results, _results
+from polyfold.studies._executors import Results, _results
 from polyfold.studies._study import Study, experiment_of
 
 ENGINES = ("local", "dask")
@@ -32,7 +42,8 @@ def evaluate(
     progress: bool = True,
     pictures: str = "failed",
     render: Render | None = None,
-) -> list[Record]:
+    accept_change: bool = False,
+) -> list[StudyEpisodeRecord]:
     """Run what a directory lacks of a study and return all its records, in the study's order.
 
     Args:
@@ -45,54 +56,100 @@ def evaluate(
         pictures: which episodes get a small picture beside their record: ``none``, ``failed`` (and the first episode
             of each task) or ``all``.
         render: draws an episode as the bytes of a WebP file; without it there are no pictures.
+        accept_change: go on with a run although code, prompts or weights have changed since; the run records it.
 
     Raises:
-        ConfigError: if the directory belongs to another study, or a component can't reach the workers.
+        ConfigError: if the directory belongs to another study, what results depend on has changed, or a component
+            can't reach the workers.
         LLMAccessError: if a variant's language model lacks its key; before anything is folded.
     """
     if engine not in ENGINES:
         raise ConfigError(f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}")
     if pictures not in PICTURES:
         raise ConfigError(f"there are no pictures {pictures!r}; choose one of {', '.join(PICTURES)}")
-    run = RunDirectory(out, {"study": study.model_dump(mode="json")})
     wanted = list(cells(study))
-    done = {key: record for key, record in run.episodes().items() if not _unanswered(record)}
+    now = study_fingerprint(study)
+    run = RunDirectory(
+        out,
+        {"study": study.model_dump(mode="json")},
+        StudyEpisodeRecord,
+        now,
+        metric_records(study),
+        threshold_records(study),
+    )
+    done = {key: record for key, record in run.records().items() if not record.unanswered}
     missing = [cell for cell in wanted if cell.key not in done]
-    if missing and (workers > 1 or engine == "dask"):
-        _check_portable()
-    _check_language_models(study, missing)
-    job = partial(evaluate_with_picture, study, pictures=pictures if render else "none", render=render)
+    if missing:
+        run.guard(now, accept_change)
+        _check_language_models(study, missing)
+        if workers > 1 or engine == "dask":
+            _check_portable()
+    job = partial(evaluate_with_picture, study, pictures=pictures, render=render)
     with closing(_results(job, missing, workers, engine, address)) as results:
-        shown = _with_progress(results, len(wanted), list(done.values()), progress and bool(missing))
+        shown = _with_progress(results, study, len(wanted), list(done.values()), progress and bool(missing))
         for cell, (record, picture) in shown:
-            run.append(cell.key, _with_picture(run.path, cell, record, picture))
-    done = run.episodes()
-    return [done[cell.key] for cell in wanted]
+            run.append(_with_picture(run.path, cell, record, picture))
+    finished = run.records()
+    return [finished[cell.key] for cell in wanted]
 
 
-def _unanswered(record: Record) -> bool:
-    """Whether the episode ended because its language model gave no answer, which may go better another time."""
-    return record["failure"] is not None and record["failure"]["stage"] == "unanswered"
+def study_fingerprint(study: Study) -> Fingerprint:
+    """What the results of a study depend on besides the study itself."""
+    also = [("metrics", name) for name in plugins.names("metrics")]
+    also += [("criteria", name) for name in study.criteria]
+    also += [("garments", kind) for kind in dict.fromkeys(cell.garment for cell in cells(study))]
+    also += [("tasks", study.suite), ("agents", "oracle")]
+    return fingerprint([experiment_of(study, variant) for variant in study.variants], also)
 
 
-def _with_picture(folder: Path, cell: Cell, record: Record, picture: bytes | None) -> Record:
+def metric_records(study: Study) -> dict[str, MetricRecord]:
+    """How each installed metric is shown, by name; those that the study's own criterion bounds first."""
+    first = criteria(study.criteria[:1])[study.criteria[0]]
+    bounded = dict.fromkeys(threshold.metric for threshold in first)
+    names = [*bounded, *(name for name in plugins.names("metrics") if name not in bounded)]
+    return {name: _metric_record(name) for name in names}
+
+
+def _metric_record(name: str) -> MetricRecord:
+    metric, summary = plugins.component_class("metrics", name), plugins.find("metrics", name).summary
+    return MetricRecord(
+        label=getattr(metric, "label", name),
+        unit=metric.unit,
+        digits=getattr(metric, "digits", 1),
+        higher_is_better=metric.higher_is_better,
+        summary=summary,
+    )
+
+
+def threshold_records(study: Study) -> dict[str, tuple[ThresholdRecord, ...]]:
+    """Bounds of the study's criteria, by name."""
+    return {
+        name: tuple(ThresholdRecord(**vars(threshold)) for threshold in thresholds)
+        for name, thresholds in criteria(study.criteria).items()
+    }
+
+
+def _with_picture(folder: Path, cell: Cell, record: StudyEpisodeRecord, picture: bytes | None) -> StudyEpisodeRecord:
     """The record with the relative path of its picture, which is on disk before the record is."""
     if picture is None:
         return record
     path = picture_path(cell.key)
     (folder / path).parent.mkdir(exist_ok=True)
     write_atomically(folder / path, picture)
-    return {**record, "picture": path}
+    return record.model_copy(update={"picture": path})
 
 
-def _with_progress(results: Results, total: int, done: Sequence[Record], shown: bool) -> Results:
+def _with_progress(
+    results: Results, study: Study, total: int, done: Sequence[StudyEpisodeRecord], shown: bool
+) -> Results:
     from tqdm import tqdm
 
-    successes = sum(record["success"]["polyfold"] for record in done)
+    criterion = study.criteria[0]
+    successes = sum(record.success[criterion] for record in done)
     with tqdm(total=total, initial=len(done), unit="episode", disable=not shown) as bar:
         for finished, (cell, (record, picture)) in enumerate(results, len(done) + 1):
             yield cell, (record, picture)
-            successes += record["success"]["polyfold"]
+            successes += record.success[criterion]
             bar.set_postfix_str(f"success {successes / finished:.0%}", refresh=False)
             bar.update()
 
@@ -102,7 +159,7 @@ def _check_language_models(study: Study, missing: Sequence[Cell]) -> None:
     for variant in dict.fromkeys(cell.variant for cell in missing):
         experiment = experiment_of(study, variant)
         agent = plugins.component_class("agents", experiment.agent.name.partition(":")[0])
-        if "instruction" in getattr(agent, "requires", ()):
+        if "instruction" in agent.requires:
             plugins.create_chosen(experiment, "llm")
 
 

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from polyfold.config import Experiment, read_toml
-from polyfold.errors import ConfigError
+from polyfold import plugins
+from polyfold.config import ComponentSpec, Experiment, read_toml
+from polyfold.errors import ConfigError, did_you_mean, validation_problem
 
 Overrides = dict[str, Any]
 
@@ -38,11 +38,14 @@ class Study(BaseModel):
             a number of folds and are left out by both.
         reference: what results are compared with: the ``oracle``'s in the same simulator, or the ``ideal``, the flat
             garment folded geometrically, which owes nothing to any simulator or policy.
+        criteria: registered success criteria to count; the first is the one that ``success %`` means.
         metrics: parameters of metrics by name, for example ``{"mppe": {"align": true}}``.
         published: success [%] that others published, by label and row (``tshirt``, ``all``, ``seen``), for the tables.
         seed: of the run; part of every episode's seed.
         base: the experiment that variants start from, as dotted paths or nested tables.
         variants: name -> overrides by dotted path, for example ``{"farthest": {"policy": "farthest"}}``.
+        factors: name of a variant -> what tells it from the others, by setting; :func:`grid` fills it in, so that
+            effects can be told apart by setting.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -57,11 +60,13 @@ class Study(BaseModel):
     split: Literal["seen", "unseen"] | None = None
     steps: Literal["single", "multi"] | None = None
     reference: Literal["oracle", "ideal"] = "oracle"
+    criteria: tuple[str, ...] = Field(("lenient", "strict"), min_length=1)
     metrics: dict[str, dict[str, Any]] = Field(default_factory=dict)
     published: dict[str, dict[str, float]] = Field(default_factory=dict)
     seed: int = 0
     base: Overrides = Field(default_factory=dict)
     variants: dict[str, Overrides] = Field(default_factory=lambda: {"polyfold": {}}, min_length=1)
+    factors: dict[str, dict[str, str]] = Field(default_factory=dict)
 
 
 def load(path: str | Path) -> Study:
@@ -69,26 +74,11 @@ def load(path: str | Path) -> Study:
     settings = read_toml(path)
     try:
         study = Study(**{"name": Path(path).stem, **settings})
-    except (ValidationError, TypeError) as error:
-        raise ConfigError(_problem(error, str(path))) from error
+    except ValidationError as error:
+        raise ConfigError(f"{path} {validation_problem(error, Study.model_fields)}") from error
     for variant in study.variants:
         experiment_of(study, variant)
     return study
-
-
-def _problem(error: Exception, source: str) -> str:
-    if not isinstance(error, ValidationError):
-        return f"{source}: {error}"
-    first = error.errors()[0]
-    where = ".".join(str(part) for part in first["loc"])
-    if first["type"] == "extra_forbidden":
-        return f"{source} has no setting {where!r}; {_nearest(where, list(Study.model_fields))}"
-    return f"{source} has a bad value for {where!r}: {first['msg']}; change it"
-
-
-def _nearest(name: str, known: Sequence[str]) -> str:
-    close = get_close_matches(name, known, n=1, cutoff=0.5)
-    return f"did you mean {close[0]!r}?" if close else f"the known ones are {', '.join(known)}"
 
 
 def ablate(base: Study, path: str, values: Sequence[Any], names: Sequence[str] | None = None) -> Study:
@@ -111,7 +101,11 @@ def grid(base: Study, settings: dict[str, Sequence[Any]], names: Sequence[str] |
         raise ConfigError(f"{len(combinations)} variants need as many names, not {len(names)}")
     common = next(iter(base.variants.values()))
     variants = {name: {**common, **combination} for name, combination in zip(names, combinations, strict=True)}
-    study = base.model_copy(update={"variants": variants})
+    factors = {
+        name: {path: _shown(value) for path, value in combination.items()}
+        for name, combination in zip(names, combinations, strict=True)
+    }
+    study = base.model_copy(update={"variants": variants, "factors": factors})
     for variant in variants:
         experiment_of(study, variant)
     return study
@@ -122,9 +116,11 @@ def with_variants(study: Study, names: Sequence[str]) -> Study:
     for name in names:
         if name not in study.variants:
             raise ConfigError(
-                f"the study {study.name!r} has no variant {name!r}; {_nearest(name, list(study.variants))}"
+                f"the study {study.name!r} has no variant {name!r}; {did_you_mean(name, list(study.variants))}"
             )
-    return study.model_copy(update={"variants": {name: study.variants[name] for name in names}})
+    chosen = {name: study.variants[name] for name in names}
+    factors = {name: found for name, found in study.factors.items() if name in chosen}
+    return study.model_copy(update={"variants": chosen, "factors": factors})
 
 
 def _shown(value: Any) -> str:
@@ -137,7 +133,9 @@ def experiment_of(study: Study, variant: str) -> Experiment:
     for path, value in {**_flat(study.base), **_flat(study.variants[variant])}.items():
         field, _, parameter = path.partition(".")
         if field not in Experiment.model_fields:
-            raise ConfigError(f"variant {variant!r} sets {path!r}; {_nearest(field, list(Experiment.model_fields))}")
+            raise ConfigError(
+                f"variant {variant!r} sets {path!r}; {did_you_mean(field, list(Experiment.model_fields))}"
+            )
         if not parameter:
             settings[field] = value
             continue
@@ -161,20 +159,15 @@ def _flat(settings: Overrides) -> Overrides:
 
 
 def _check_parameters(experiment: Experiment, variant: str) -> None:
-    from polyfold import plugins
-
-    kinds = {"policy": "policies"}
+    """Raises ConfigError for a parameter that the chosen component does not have, naming the nearest that it has."""
     for field in Experiment.model_fields:
-        choice = getattr(experiment, field)
-        if isinstance(choice, str) or not choice.params:
+        spec = getattr(experiment, field)
+        if not isinstance(spec, ComponentSpec):
             continue
-        config = getattr(
-            plugins.component_class(kinds.get(field, f"{field}s"), choice.name.partition(":")[0]), "Config", None
-        )
-        known = list(config.model_fields) if config is not None else []
-        for parameter in choice.params:
+        known = plugins.parameter_names(plugins.plural(field), spec) if spec.params else ()
+        for parameter in spec.params:
             if parameter not in known:
                 raise ConfigError(
-                    f"variant {variant!r} sets '{field}.{parameter}', which {choice.name!r} does not have; "
-                    + _nearest(f"{field}.{parameter}", [f"{field}.{name}" for name in known])
+                    f"variant {variant!r} sets '{field}.{parameter}', which {spec.name!r} does not have; "
+                    + did_you_mean(f"{field}.{parameter}", [f"{field}.{name}" for name in known])
                 )

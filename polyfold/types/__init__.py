@@ -9,7 +9,7 @@ from polyfold.types._decisions import Action, ActionMap, Decision, Subgoal
 from polyfold.types._episode import Episode, EpisodeStart, Failure, Step
 from polyfold.types._fidelity import Fidelity
 from polyfold.types._perception import Observation, Scene
-from polyfold.types._scores import Outcome
+from polyfold.types._scores import Outcome, Threshold
 from polyfold.types._state import SimState
 
 __all__ = [
@@ -29,4 +29,5 @@ __all__ = [
     "SimState",
     "Step",
     "Subgoal",
+    "Threshold",
 ]

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from polyfold.analysis import Results, estimate
-from polyfold.analysis._results import COLUMNS
+from polyfold.analysis import Results, column_of, estimate
 from polyfold.types._views import makes
 
 PALETTE = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c8c8c")
@@ -18,26 +17,27 @@ def bars(results: Results, column: str = "success %") -> Any:
 
     Args:
         results: of a study.
-        column: a column of :func:`polyfold.table`.
+        column: heading of a column of :func:`polyfold.table`, a metric's name or a criterion's.
 
     Returns:
         A matplotlib figure.
     """
     from matplotlib.figure import Figure
 
+    chosen = column_of(results.run, column)
     kinds, variants = results.kinds(), list(results.study.variants)
     figure = Figure(figsize=(2.0 + 1.6 * len(kinds), 3.2), layout="constrained")
     axes = figure.subplots()
     width = 0.8 / len(variants)
     for number, variant in enumerate(variants):
-        found = [estimate([COLUMNS[column](record) for record in results.of(variant, kind)]) for kind in kinds]
+        found = [estimate([chosen.value(record) for record in results.of(variant, kind)]) for kind in kinds]
         at = [place + (number - (len(variants) - 1) / 2) * width for place in range(len(kinds))]
         means = [value.mean for value in found]
         spans = [[v.mean - v.low for v in found], [v.high - v.mean for v in found]]
         colour = PALETTE[number % len(PALETTE)]
         axes.bar(at, means, 0.92 * width, yerr=spans, label=variant, color=colour, capsize=2, error_kw={"lw": 1})
     axes.set_xticks(range(len(kinds)), kinds)
-    axes.set_ylabel(column)
+    axes.set_ylabel(chosen.heading)
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(frameon=False, fontsize=8)
     return figure

@@ -11,7 +11,8 @@ from polyfold.viz._plots import PALETTE
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-from polyfold.analysis._providers import MEASURES, Record, _is_free, measured
+from polyfold.analysis._providers import MEASURES, is_free, measured
+from polyfold.logs import StudyEpisodeRecord
 
 PANELS: Sequence[tuple[str, Sequence[str]]] = (
     ("success %", ("success %",)),
@@ -67,8 +68,8 @@ def _draw(axes: Axes, results: Results, models: Sequence[str], measure: str, pla
         )
 
 
-def _value(records: Sequence[Record], measure: str, found: Estimate) -> str:
-    if measure.startswith("cost") and _is_free(records):
+def _value(records: Sequence[StudyEpisodeRecord], measure: str, found: Estimate) -> str:
+    if measure.startswith("cost") and is_free(records):
         return "free"
     return f"{found.mean:.{MEASURES[measure].digits}f}"
 

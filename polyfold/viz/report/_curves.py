@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from polyfold.analysis._results import Record, compared
-from polyfold.evaluation import Threshold, needed_scale
+from polyfold.evaluation import needed_scale
+from polyfold.logs import StudyEpisodeRecord
+from polyfold.types import Threshold
 
 SCALES = tuple(float(scale) for scale in np.linspace(0.25, 2.0, 36))
-"""Factors on the thresholds of the preset ``polyfold``."""
+"""Factors on the thresholds of the study's own criterion."""
 
 
 @dataclass(frozen=True)
@@ -30,13 +31,13 @@ class Curve:
     n: int
 
 
-def success_curve(records: Sequence[Record]) -> Curve:
-    """Success of episodes as all thresholds of the preset ``polyfold`` are loosened or tightened together.
+def success_curve(records: Sequence[StudyEpisodeRecord], thresholds: Sequence[Threshold]) -> Curve:
+    """Success of episodes as all thresholds of a criterion are loosened or tightened together.
 
     Bounds on errors are multiplied; of a bound on an overlap, what may be missing to 1 is. An episode that ended early
     never succeeds; a goal that is done by its own bounds does with any thresholds.
     """
-    needed = np.array([_needed_scale(record) for record in records])
+    needed = np.array([smallest_scale(record, thresholds) for record in records])
     counts = [int(np.count_nonzero(needed <= scale + 1e-9)) for scale in SCALES]
     n = len(records)
     intervals = [wilson(count, n) for count in counts]
@@ -50,15 +51,17 @@ def scaled(threshold: Threshold, scale: float) -> Threshold:
     return replace(threshold, bound=bound)
 
 
-def _needed_scale(record: Record) -> float:
-    """The smallest factor on the thresholds at which an episode succeeds."""
-    if record["failure"] is not None:
+def smallest_scale(record: StudyEpisodeRecord, thresholds: Sequence[Threshold]) -> float:
+    """The smallest factor on the thresholds at which an episode succeeds; infinite where none would do."""
+    if record.failure is not None:
         return math.inf
-    if (record.get("done") or {}).get("holds"):
+    if record.done is not None and record.done.holds:
         return 0.0
-    if not compared(record):
+    if not record.compared:
         return math.inf
-    return needed_scale({name: math.nan if value is None else value for name, value in record["metrics"].items()})
+    return needed_scale(
+        {name: math.nan if value is None else value for name, value in record.metrics.items()}, thresholds
+    )
 
 
 def wilson(successes: int, n: int) -> tuple[float, float]:

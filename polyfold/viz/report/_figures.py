@@ -8,9 +8,9 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from polyfold.analysis import Estimate, Table, estimate, shown
-from polyfold.analysis._results import Record, compared
+from polyfold.analysis import Column, Estimate, Figure, Table, columns_of, estimate
 from polyfold.evaluation import CAUSES
+from polyfold.logs import StudyEpisodeRecord
 from polyfold.viz.report._charts import Part, bar, curve_panel, dot
 from polyfold.viz.report._curves import success_curve
 from polyfold.viz.report._source import Source
@@ -31,24 +31,26 @@ def legend(names: Iterable[str]) -> list[tuple[str, int]]:
     return [(name, COLOUR.get(name, OTHER)) for name in names]
 
 
-def _success(records: Sequence[Record], preset: str = "polyfold") -> Estimate:
-    return estimate([100.0 * record["success"][preset] for record in records])
+def _success(records: Sequence[StudyEpisodeRecord]) -> Estimate:
+    return estimate([100.0 * record.succeeded for record in records])
 
 
 def headline(source: Source) -> list[dict[str, str]]:
-    """The first variant's figures: what is read first."""
+    """The first variant's figures, success before metrics: what is read first."""
     records = source.of(source.variants[0])
-    metrics = (("mIoU", "miou", ""), ("moved part", "moved-part", "mm"))
-    figures = [("success", _success(records), "%"), ("success, strict", _success(records, "strict"), "%")]
-    figures += [
-        (label, estimate([record["metrics"][name] for record in records]), unit) for label, name, unit in metrics
-    ]
-    return [_figure(label, value, unit) for label, value, unit in figures]
+    columns = sorted(columns_of(source.results.run), key=lambda column: not column.is_success)
+    return [_figure(column, estimate([column.value(record) for record in records])) for column in columns]
 
 
-def _figure(label: str, value: Estimate, unit: str) -> dict[str, str]:
-    mean, _, interval = shown(value, 1 if unit else 3).partition(" ")
-    return {"label": label, "mean": mean, "interval": interval.strip("[]").replace(", ", " to "), "unit": unit}
+def _figure(column: Column, value: Estimate) -> dict[str, str]:
+    figure = Figure(value, column.digits)
+    label, _, unit = column.heading.removesuffix(" %").partition(" [")
+    return {
+        "label": label,
+        "mean": figure.mean,
+        "interval": " to ".join(figure.ends) if figure.is_known else "",
+        "unit": "%" if column.is_success else unit.rstrip("]"),
+    }
 
 
 def success_panels(source: Source) -> list[dict[str, Any]]:
@@ -74,23 +76,21 @@ def curve_panels(source: Source) -> list[dict[str, Any]]:
     bands = len(source.variants) <= 4
     panels = []
     for heading, kind in source.groups():
-        curves = [(variant, success_curve(source.of(variant, kind))) for variant in source.variants]
+        curves = [
+            (variant, success_curve(source.of(variant, kind), source.own_criterion)) for variant in source.variants
+        ]
         panels.append({"heading": heading, "n": _most(source, kind), "chart": curve_panel(heading, curves, bands)})
     return panels
 
 
 def idle_references(source: Source) -> list[str]:
-    """Tasks and garments of the episodes in which the oracle moved nothing: there is no moved part to measure."""
-    idle = [record for record in source.records if compared(record) and _nothing_to_move(record)]
-    return [f"{record['task']} on {record['garment']} {record['garment_seed']}" for record in idle]
+    """Tasks and garments of the episodes whose reference moved nothing: doing nothing is right there."""
+    idle = [record for record in source.records if record.reference_idle]
+    return [f"{record.task} on {record.garment.kind} {record.garment.seed}" for record in idle]
 
 
-def _nothing_to_move(record: Record) -> bool:
-    return record["metrics"].get("moved-part", 0.0) is None
-
-
-def _causes(records: Sequence[Record]) -> Counter[str]:
-    return Counter(record["cause"] or "unknown" for record in records if not record["success"]["polyfold"])
+def _causes(records: Sequence[StudyEpisodeRecord]) -> Counter[str]:
+    return Counter(record.cause or "unknown" for record in records if not record.succeeded)
 
 
 def cause_names(source: Source) -> list[str]:
@@ -133,7 +133,7 @@ def cause_table(source: Source) -> Table:
 
 def stage_names(source: Source) -> list[str]:
     """Stages that took time, in the order of an episode."""
-    found = {stage for record in source.records for stage in record["seconds"]}
+    found = {stage for record in source.records for stage in record.seconds}
     return [stage for stage in STAGES if stage in found] + sorted(found - set(STAGES))
 
 
@@ -153,10 +153,10 @@ def time_rows(source: Source) -> list[dict[str, Any]]:
     ]
 
 
-def _stage_means(records: Sequence[Record], stages: Sequence[str]) -> Mapping[str, float]:
+def _stage_means(records: Sequence[StudyEpisodeRecord], stages: Sequence[str]) -> Mapping[str, float]:
     if not records:
         return {}
-    return {stage: statistics.fmean(record["seconds"].get(stage, 0.0) for record in records) for stage in stages}
+    return {stage: statistics.fmean(record.seconds.get(stage, 0.0) for record in records) for stage in stages}
 
 
 def time_table(source: Source) -> Table:
@@ -166,7 +166,7 @@ def time_table(source: Source) -> Table:
         records = source.of(variant)
         if not records:
             continue
-        totals = sorted(sum(record["seconds"].values()) for record in records)
+        totals = sorted(sum(record.seconds.values()) for record in records)
         late = totals[min(len(totals) - 1, math.ceil(0.95 * len(totals)) - 1)]
         means = _stage_means(records, stages)
         cells = [f"{value:.3f}" if value else "·" for value in means.values()]

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from base64 import b64encode
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from polyfold.analysis._results import Record
+from polyfold.logs import StudyEpisodeRecord
+from polyfold.viz.report._curves import smallest_scale
 from polyfold.viz.report._source import Source
 
 LIMIT = 15_000_000
@@ -29,7 +31,7 @@ class Card:
         panels: pictures in the strip.
     """
 
-    record: Record
+    record: StudyEpisodeRecord
     pick: str
     picture: str
     panels: int
@@ -61,17 +63,17 @@ def gallery(source: Source, limit: int = LIMIT) -> Gallery:
     what is rare is not crowded out.
     """
     files = _files(source)
-    pictured = [record for record in source.records if record["key"] in files]
+    pictured = [record for record in source.records if record.key in files]
     picks = _picks(source, pictured)
     turns = _turns(pictured)
     wanted = sorted(
         pictured,
-        key=lambda record: (record["key"] not in picks, record["success"]["polyfold"], turns[record["key"]]),
+        key=lambda record: (record.key not in picks, record.succeeded, turns[record.key]),
     )
     chosen: list[Card] = []
     spent = 0
     for record in wanted:
-        card = _card(files[record["key"]], record, picks.get(record["key"], ""))
+        card = _card(files[record.key], record, picks.get(record.key, ""))
         if card is not None:
             spent += len(card.picture)
             if spent > limit:
@@ -79,9 +81,9 @@ def gallery(source: Source, limit: int = LIMIT) -> Gallery:
             chosen.append(card)
     rank = {variant: index for index, variant in enumerate(source.variants)}
     order = ("best", "median", "failure", "")
-    chosen.sort(key=lambda card: (rank.get(card.record["variant"], len(rank)), order.index(card.pick)))
+    chosen.sort(key=lambda card: (rank.get(card.record.variant, len(rank)), order.index(card.pick)))
     unpictured = len(source.records) - len(pictured)
-    mapped = any(card.record.get("values_picks") for card in chosen)
+    mapped = any(card.record.values_picks for card in chosen)
     return Gallery(chosen, len(pictured), len(pictured) - len(chosen), unpictured, mapped)
 
 
@@ -90,55 +92,60 @@ def _files(source: Source) -> dict[str, Path]:
     root = source.folder.resolve()
     found = {}
     for record in source.records:
-        if record.get("picture"):
-            path = (root / record["picture"]).resolve()
+        if record.picture:
+            path = (root / record.picture).resolve()
             if path.is_relative_to(root) and path.is_file():
-                found[record["key"]] = path
+                found[record.key] = path
     return found
 
 
-def _turns(records: Sequence[Record]) -> dict[str, int]:
+def _turns(records: Sequence[StudyEpisodeRecord]) -> dict[str, int]:
     """How many episodes of the same variant, kind and cause come before each, by key."""
     seen: Counter[tuple[str, str, str | None]] = Counter()
     turns = {}
     for record in records:
-        group = (record["variant"], record["garment"], record["cause"])
-        turns[record["key"]] = seen[group]
+        group = (record.variant, record.garment.kind, record.cause)
+        turns[record.key] = seen[group]
         seen[group] += 1
     return turns
 
 
-def _picks(source: Source, pictured: Sequence[Record]) -> dict[str, str]:
+def _picks(source: Source, pictured: Sequence[StudyEpisodeRecord]) -> dict[str, str]:
     """Why which episodes stand out, by key; each once."""
     found: dict[str, str] = {}
+    needed = {record.key: smallest_scale(record, source.own_criterion) for record in source.records}
     for variant in source.variants:
         for kind in source.results.kinds():
-            mine = [record for record in pictured if (record["variant"], record["garment"]) == (variant, kind)]
-            found |= _picks_of(mine, source.of(variant, kind))
+            mine = [record for record in pictured if (record.variant, record.garment.kind) == (variant, kind)]
+            everything = [needed[record.key] for record in source.of(variant, kind)]
+            found |= _picks_of(mine, needed, [scale for scale in everything if math.isfinite(scale)])
     return found
 
 
-def _picks_of(pictured: Sequence[Record], everything: Sequence[Record]) -> dict[str, str]:
-    """The best, the median and the first further failure of each cause; the median is that of all, pictured or not."""
+def _picks_of(
+    pictured: Sequence[StudyEpisodeRecord], needed: Mapping[str, float], everything: Sequence[float]
+) -> dict[str, str]:
+    """The best, the median and the first further failure of each cause.
+
+    Args:
+        pictured: episodes to choose from.
+        needed: by key, the factor on the criterion's thresholds at which an episode just meets them.
+        everything: these factors of all episodes, pictured or not, that the median is of.
+    """
     found: dict[str, str] = {}
-    scored = sorted((record for record in pictured if _error(record) is not None), key=_error)
-    successes = [record for record in scored if record["success"]["polyfold"]]
+    scored = sorted((r for r in pictured if math.isfinite(needed[r.key])), key=lambda record: needed[record.key])
+    successes = [record for record in scored if record.succeeded]
     if successes:
-        found[successes[0]["key"]] = "best"
+        found[successes[0].key] = "best"
     if scored:
-        middle = statistics.median(error for error in map(_error, everything) if error is not None)
-        found.setdefault(min(scored, key=lambda record: abs(_error(record) - middle))["key"], "median")
-    failures = [r for r in pictured if not r["success"]["polyfold"] and r["key"] not in found]
-    first_of_cause = {record["cause"]: record["key"] for record in reversed(failures)}
+        middle = statistics.median(everything)
+        found.setdefault(min(scored, key=lambda record: abs(needed[record.key] - middle)).key, "median")
+    failures = [record for record in pictured if not record.succeeded and record.key not in found]
+    first_of_cause = {record.cause: record.key for record in reversed(failures)}
     return found | dict.fromkeys(first_of_cause.values(), "failure")
 
 
-def _error(record: Record) -> float | None:
-    """What episodes are ranked by: the error of the moved part [mm]."""
-    return record["metrics"].get("moved-part")
-
-
-def _card(path: Path, record: Record, pick: str) -> Card | None:
+def _card(path: Path, record: StudyEpisodeRecord, pick: str) -> Card | None:
     data = path.read_bytes()
     media = next((media for start, media in TYPES.items() if data.startswith(start)), None)
     if media is None:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import hashlib
 import json
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 
-from polyfold.analysis import Results, noise_floor, table
-from polyfold.evaluation import PRESETS, Threshold
-from polyfold.logs import write_atomically
+from polyfold.analysis import Results, columns_of, noise_floor, table
+from polyfold.analysis._tabulation import REFERENCES
+from polyfold.logs import MetricRecord, write_atomically
+from polyfold.types import Threshold
 from polyfold.viz.report._charts import percent_axis
 from polyfold.viz.report._curves import scaled
 from polyfold.viz.report._figures import (
@@ -31,7 +32,7 @@ from polyfold.viz.report._figures import (
 )
 from polyfold.viz.report._gallery import LIMIT, gallery
 from polyfold.viz.report._source import Source, open_source
-from polyfold.viz.report._tabular import comparison_html, success_first, table_html
+from polyfold.viz.report._tabular import comparison_html, table_html
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 ASSETS = Path(__file__).parent
@@ -74,8 +75,14 @@ def report_html(folder: str | Path, noise: Results | None = None) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["figure"] = _shown
     floor = None if noise is None else noise_floor(noise)
     return environment.get_template("page.html").render(**_content(source), noise_floor=floor, **_assets())
+
+
+def _shown(value: float, metric: MetricRecord) -> str:
+    """A metric's value with its unit."""
+    return f"{value:.{metric.digits}f} {metric.unit}".rstrip()
 
 
 def _assets() -> dict[str, Any]:
@@ -103,11 +110,13 @@ def _content(source: Source) -> dict[str, Any]:
         "kinds": source.results.kinds(),
         "n": len(source.records),
         "expected": source.expected,
-        "privileged": any(record["privileged"] for record in source.records),
-        "goals": any(record.get("steps_wanted", 0) is None for record in source.records),
+        "privileged": any(record.privileged for record in source.records),
+        "goals": any(record.steps_wanted is None for record in source.records),
         "first": first,
-        "versions": source.versions,
-        "presets": {name: [_bound(threshold) for threshold in bounds] for name, bounds in PRESETS.items()},
+        "run": source.results.run,
+        "criteria": {name: _bounds(source, bounds) for name, bounds in source.criteria.items()},
+        "bounded": [threshold.metric for threshold in source.own_criterion],
+        "reference": REFERENCES[study.reference],
         "configuration": _toml(study.model_dump(mode="json")),
         **(_figures(source, others) if source.records else {}),
     }
@@ -116,35 +125,40 @@ def _content(source: Source) -> dict[str, Any]:
 def _figures(source: Source, others: list[str]) -> dict[str, Any]:
     results, first = source.results, source.variants[0]
     run = [variant for variant in others if results.of(variant)] if results.of(first) else []
+    # Shares of success stand before the errors, so that a narrow window shows what matters most.
+    columns = [column.heading for column in sorted(columns_of(results.run), key=lambda column: not column.is_success)]
+    memory = [record.peak_memory_mb for record in source.records if record.peak_memory_mb is not None]
     return {
         "headline": headline(source) if results.of(first) else [],
         "success": success_panels(source),
         "tables": [
-            ("By task type", table_html(success_first(table(results, groups="type")), 2)),
-            ("By task", table_html(success_first(table(results, groups="task")), 2)),
+            ("By task type", table_html(table(results, columns, "type"), 2)),
+            ("By task", table_html(table(results, columns, "task"), 2)),
         ],
-        "by_kind": table_html(success_first(table(results)), 2),
-        "comparison": comparison_html(results, first, run) if run else "",
+        "by_kind": table_html(table(results, columns), 2),
+        "comparison": comparison_html(results, first, run, columns) if run else "",
         "percent_axis": percent_axis(),
         "idle": idle_references(source),
         "curves": curve_panels(source),
-        "half": [_bound(scaled(threshold, 0.5)) for threshold in PRESETS["polyfold"]],
+        "half": _bounds(source, [scaled(threshold, 0.5) for threshold in source.own_criterion]),
         "causes": {"legend": legend(cause_names(source)), "rows": cause_rows(source)},
         "cause_table": table_html(cause_table(source), 2),
         "times": {"legend": legend(stage_names(source)), "rows": time_rows(source)},
         "time_table": table_html(time_table(source), 1),
-        "memory": max(record["peak_memory_mb"] for record in source.records),
+        "memory": max(memory, default=None),
         "gallery": gallery(source),
         "gallery_limit": LIMIT,
     }
 
 
-def _bound(threshold: Threshold) -> str:
-    names = {"miou": "mIoU", "mppe": "MPPE", "moved-part": "moved part"}
-    unit = "" if threshold.higher_is_better else " mm"
+def _bounds(source: Source, thresholds: Sequence[Threshold]) -> list[str]:
+    """Bounds in words, such as ``MPPE ≤ 30 mm``, that a line is not broken in."""
+    return [_bound(threshold, source.results.run.metrics[threshold.metric]) for threshold in thresholds]
+
+
+def _bound(threshold: Threshold, metric: MetricRecord) -> str:
     sign = "≥" if threshold.higher_is_better else "≤"
-    text = f"{names.get(threshold.metric, threshold.metric)} {sign} {threshold.bound:g}{unit}"
-    return text.replace(" ", NO_BREAK)
+    return f"{metric.label} {sign} {threshold.bound:g} {metric.unit}".rstrip().replace(" ", NO_BREAK)
 
 
 def _toml(settings: Mapping[str, Any]) -> str:

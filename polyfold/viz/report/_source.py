@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 from polyfold.analysis import Results, open_results
-from polyfold.analysis._results import Record
 from polyfold.errors import PolyfoldError
+from polyfold.logs import StudyEpisodeRecord
 from polyfold.studies import Study, cells
+from polyfold.types import Threshold
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,13 +21,11 @@ class Source:
     Attributes:
         folder: the directory.
         results: its study and finished episodes.
-        versions: of the packages it was made with.
         expected: episodes of the whole study; None where its task suite is not installed.
     """
 
     folder: Path
     results: Results
-    versions: Mapping[str, str]
     expected: int | None
 
     @property
@@ -37,21 +34,34 @@ class Source:
         return list(self.results.study.variants)
 
     @property
-    def records(self) -> Sequence[Record]:
+    def records(self) -> Sequence[StudyEpisodeRecord]:
         """The finished episodes."""
         return self.results.records
 
-    def of(self, variant: str, kind: str | None = None) -> Sequence[Record]:
+    @property
+    def criteria(self) -> Mapping[str, Sequence[Threshold]]:
+        """Bounds by criterion, the study's own first."""
+        return {
+            name: [Threshold(**bound.model_dump()) for bound in bounds]
+            for name, bounds in self.results.run.criteria.items()
+        }
+
+    @property
+    def own_criterion(self) -> Sequence[Threshold]:
+        """Bounds of the study's own criterion."""
+        return self.criteria[self.results.criterion]
+
+    def of(self, variant: str, kind: str | None = None) -> Sequence[StudyEpisodeRecord]:
         """Records of a variant, of one garment kind or of all."""
         return self._by_group.get((variant, kind), [])
 
     @cached_property
-    def _by_group(self) -> Mapping[tuple[str, str | None], Sequence[Record]]:
+    def _by_group(self) -> Mapping[tuple[str, str | None], Sequence[StudyEpisodeRecord]]:
         """Large runs are asked for the same records many times."""
-        found: dict[tuple[str, str | None], list[Record]] = {}
+        found: dict[tuple[str, str | None], list[StudyEpisodeRecord]] = {}
         for record in self.records:
-            for kind in (record["garment"], None):
-                found.setdefault((record["variant"], kind), []).append(record)
+            for kind in (record.garment.kind, None):
+                found.setdefault((record.variant, kind), []).append(record)
         return found
 
     def groups(self) -> list[tuple[str, str | None]]:
@@ -63,10 +73,8 @@ class Source:
 
 def open_source(folder: str | Path) -> Source:
     """Read a run directory. Raises ConfigError if there is none."""
-    folder = Path(folder)
     results = open_results(folder)
-    description: dict[str, Any] = json.loads((folder / "run.json").read_text("utf-8"))
-    return Source(folder, results, description.get("versions", {}), _expected(results.study))
+    return Source(Path(folder), results, _expected(results.study))
 
 
 def _expected(study: Study) -> int | None:

@@ -2,37 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from markupsafe import Markup
 
 from polyfold.analysis import Results, Table, compare
-from polyfold.analysis._results import COLUMNS
-
-_FIGURE = re.compile(r"(?P<mean>\S+) \[(?P<low>[-+.\d]+), (?P<high>[-+.\d]+)\]")
-"""A cell as :func:`polyfold.tables.shown` writes it."""
+from polyfold.analysis._tables import Cell
 
 
-def comparison_html(results: Results, first: str, others: Sequence[str]) -> Markup:
+def comparison_html(results: Results, first: str, others: Sequence[str], columns: Sequence[str]) -> Markup:
     """Paired differences of the other variants to the first, in one table."""
-    tables = [(variant, success_first(compare(results, variant, first))) for variant in others]
-    rows = [[variant, *row] for variant, made in tables for row in made.rows]
-    return table_html(Table(["variant", *tables[0][1].headers], rows), 2, differences=True)
-
-
-def success_first(table: Table) -> Table:
-    """The table with shares of success before the errors, so that a narrow window shows what matters most."""
-    order = sorted(range(len(table.headers)), key=lambda index: _rank(table.headers[index]))
-    return Table(
-        [table.headers[index] for index in order], [[row[index] for index in order] for row in table.rows], table.note
-    )
-
-
-def _rank(header: str) -> int:
-    if header.endswith("%"):
-        return 1
-    return 2 if header in COLUMNS else 0
+    tables = [(variant, compare(results, variant, first, columns)) for variant in others]
+    cells: list[list[Cell]] = [[variant, *row] for variant, made in tables for row in made.cells]
+    return table_html(Table(["variant", *tables[0][1].headers], cells), 2, differences=True)
 
 
 def table_html(table: Table, columns_of_text: int, differences: bool = False) -> Markup:
@@ -45,7 +27,7 @@ def table_html(table: Table, columns_of_text: int, differences: bool = False) ->
     """
     head = Markup("").join(_header(name, index < columns_of_text) for index, name in enumerate(table.headers))
     body, before = [], None
-    for row in table.rows:
+    for row in table.cells:
         fresh = before is None or row[0] != before[0]
         cells = Markup("").join(
             _label(cell, index, fresh) if index < columns_of_text else _value(cell, differences)
@@ -71,13 +53,17 @@ def _label(cell: str, index: int, fresh: bool) -> Markup:
     return Markup('<td class="label{}" title="{}">{}</td>').format(" again" if dimmed else "", cell, cell)
 
 
-def _value(cell: str, difference: bool) -> Markup:
-    found = _FIGURE.fullmatch(cell)
-    if found is None:
+def _value(cell: Cell, difference: bool) -> Markup:
+    if isinstance(cell, str) or not cell.is_known:
         return Markup("<td>{}</td>").format(cell)
-    unsure = difference and float(found["low"]) <= 0.0 <= float(found["high"])
-    return Markup('<td{}>{} <span class="interval">[{}, {}]</span></td>').format(
-        Markup(' class="unsure"') if unsure else "", *(_signed(found[part]) for part in ("mean", "low", "high"))
+    unsure = difference and cell.value.low <= 0.0 <= cell.value.high
+    low, high = cell.ends
+    return Markup('<td{}>{} <span class="interval">[{}, {}]</span>{}</td>').format(
+        Markup(' class="unsure"') if unsure else "",
+        _signed(cell.mean),
+        _signed(low),
+        _signed(high),
+        f" {cell.note}" if cell.note else "",
     )
 
 

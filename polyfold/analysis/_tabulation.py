@@ -1,0 +1,167 @@
+"""Tables of a study: variants by group, paired differences, errors after each fold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from polyfold.analysis._columns import Column, column_of, columns_of
+from polyfold.analysis._results import Results
+from polyfold.analysis._statistics import estimate, paired
+from polyfold.analysis._tables import Cell, Figure, Table
+from polyfold.errors import ConfigError, did_you_mean
+from polyfold.logs import StudyEpisodeRecord
+from polyfold.types._views import makes
+
+REFERENCES = {
+    "oracle": "the oracle from the same start",
+    "ideal": "the flat garment folded geometrically along the task's lines",
+}
+"""What results are compared with, in words."""
+
+Key = Callable[[StudyEpisodeRecord], str | None]
+
+GROUPS: Mapping[str, Key] = {
+    "kind": lambda record: record.garment.kind,
+    "type": lambda record: record.type,
+    "task": lambda record: record.task,
+    "split": lambda record: record.split,
+}
+"""What rows can be made of; the groups ``none`` and ``step`` besides."""
+
+
+def table(
+    results: Results, columns: Sequence[str] | None = None, groups: str = "kind", noise: Results | None = None
+) -> Table:
+    """Variants by garment kind (``kind``), task type (``type``), ``task``, ``split``, ``step``, or all (``none``).
+
+    Cells are means with 95 % bootstrap intervals; n is the number of episodes.
+
+    Args:
+        results: what to tabulate.
+        columns: headings, names of metrics or of criteria; by default every metric and criterion of the run.
+        groups: what makes a row; ``step`` gives the mean particle error after each of the episode's own folds.
+        noise: a study of what differs without meaning; it becomes a footnote, see :func:`noise_floor`.
+    """
+    if groups == "step":
+        return _by_step(results)
+    if groups not in (*GROUPS, "none"):
+        raise ConfigError(f"can't group by {groups!r}; choose one of {', '.join(GROUPS)}, none, step")
+    chosen = _chosen(results, columns)
+    rows: list[list[Cell]] = []
+    for variant in results.study.variants:
+        for group, records in _grouped(results, variant, groups):
+            figures = [_mean(column, records) for column in chosen]
+            rows.append([_marked(variant, records), group, str(len(records)), *figures])
+    rows += _published(results, chosen, dict.fromkeys(str(row[1]) for row in rows))
+    headers = ["variant", groups if groups != "none" else "", "n", *(column.heading for column in chosen)]
+    return Table(headers, rows, _note(results, noise))
+
+
+@makes(Results, "html")
+def _html(results: Results) -> str:
+    return table(results).html()
+
+
+def _chosen(results: Results, columns: Sequence[str] | None) -> list[Column]:
+    if columns is None:
+        return columns_of(results.run)
+    return [column_of(results.run, name) for name in columns]
+
+
+def _note(results: Results, noise: Results | None) -> str:
+    note = f"{results.study.name}: mean [95 % bootstrap interval]; reference: {REFERENCES[results.study.reference]}."
+    if any(record.steps_wanted is None for record in results.records):
+        note += " Goals: the nearest task that each accepts; success includes those that are done by their own bounds."
+    if any(record.privileged for record in results.records):
+        note += " * privileged: sees more than the camera."
+    for change in results.run.changes:
+        note += f" Went on after {change.episodes} episodes with a change: {'; '.join(change.differences)}."
+    return note if noise is None else f"{note} {noise_floor(noise)}"
+
+
+def noise_floor(noise: Results) -> str:
+    """How far results differ that differ in nothing that matters, as a sentence.
+
+    Args:
+        noise: a study of the oracle with its particles, contacts and constraints in other orders.
+    """
+    columns = ", ".join(f"{column.heading} {_mean(column, noise.records)}" for column in columns_of(noise.run))
+    count = len(noise.records)
+    return f"Noise floor, the oracle repeated with particles and contacts in another order (n={count}): {columns}."
+
+
+def _by_step(results: Results) -> Table:
+    most = max((len(record.step_errors_mm) for record in results.records), default=0)
+    rows: list[list[Cell]] = []
+    for variant in results.study.variants:
+        for kind, records in _grouped(results, variant, "kind"):
+            errors = [record.step_errors_mm for record in records]
+            after = [[found[step] for found in errors if len(found) > step] for step in range(most)]
+            cells = [Figure(estimate(values), note=f"(n={len(values)})") if values else "–" for values in after]
+            rows.append([_marked(variant, records), kind, *cells])
+    note = f"{results.study.name}: mean particle error [mm] after each fold of the episode's own."
+    return Table(["variant", "kind", *(f"step {step + 1}" for step in range(most))], rows, note)
+
+
+def _published(results: Results, columns: Sequence[Column], groups: Iterable[str]) -> list[list[Cell]]:
+    """Rows of what others published, which is success alone."""
+    return [
+        [label, group, "–", *(f"{figures[group]:.1f}" if column.heading == "success %" else "–" for column in columns)]
+        for label, figures in results.study.published.items()
+        for group in groups
+        if group in figures
+    ]
+
+
+def _mean(column: Column, records: Sequence[StudyEpisodeRecord]) -> Figure:
+    return Figure(estimate([column.value(record) for record in records]), column.digits)
+
+
+def _marked(variant: str, records: Sequence[StudyEpisodeRecord]) -> str:
+    return f"{variant} *" if any(record.privileged for record in records) else variant
+
+
+def _grouped(results: Results, variant: str, groups: str) -> list[tuple[str, list[StudyEpisodeRecord]]]:
+    """Records of a variant by group, groups in the study's order, then all of them."""
+    mine = results.of(variant)
+    found: list[tuple[str, list[StudyEpisodeRecord]]] = []
+    if groups != "none":
+        key = GROUPS[groups]
+        names = results.kinds() if groups == "kind" else dict.fromkeys(key(record) for record in results.records)
+        found = [(name or "–", [record for record in mine if key(record) == name]) for name in names]
+    found.append(("all", mine))
+    return [(name, records) for name, records in found if records]
+
+
+def compare(results: Results, variant: str, baseline: str, columns: Sequence[str] | None = None) -> Table:
+    """Paired differences between two variants on the same tasks, garments and wordings.
+
+    Args:
+        results: of a study that has both.
+        variant, baseline: names; the difference is variant − baseline.
+        columns: as in :func:`table`.
+    """
+    for name in (variant, baseline):
+        if name not in results.study.variants:
+            raise ConfigError(f"there is no variant {name!r}; {did_you_mean(name, results.study.variants)}")
+    chosen = _chosen(results, columns)
+    ours, theirs = (_by_episode(results.of(name)) for name in (variant, baseline))
+    shared = [key for key in ours if key in theirs]
+    rows: list[list[Cell]] = []
+    for kind in [*results.kinds(), "all"]:
+        keys = [key for key in shared if kind in ("all", ours[key].garment.kind)]
+        if keys:
+            pair = [ours[key] for key in keys], [theirs[key] for key in keys]
+            rows.append([kind, str(len(keys)), *(_difference(column, *pair) for column in chosen)])
+    note = f"{variant} − {baseline}, the same episodes; mean [95 % bootstrap interval]."
+    return Table(["kind", "n", *(column.heading for column in chosen)], rows, note)
+
+
+def _difference(column: Column, ours: Sequence[StudyEpisodeRecord], theirs: Sequence[StudyEpisodeRecord]) -> Figure:
+    found = paired([column.value(record) for record in ours], [column.value(record) for record in theirs])
+    return Figure(found, column.digits, signed=True)
+
+
+def _by_episode(records: Sequence[StudyEpisodeRecord]) -> dict[tuple[Any, ...], StudyEpisodeRecord]:
+    return {(record.task, record.garment.seed, record.wording): record for record in records}

@@ -1,0 +1,21 @@
+"""Files of a run directory: written whole or not at all, with names that every file system takes."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from pathlib import Path
+
+
+def write_atomically(path: Path, content: str | bytes) -> None:
+    """Write a file so that a kill leaves either the old content or the new."""
+    scratch = path.with_name(f".{path.name}.{os.getpid()}")
+    scratch.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+    scratch.replace(path)
+
+
+def picture_path(key: str) -> str:
+    """Where an episode's picture lies in its run directory, as a relative path that every file system takes."""
+    readable = re.sub(r"[^A-Za-z0-9.-]+", "_", key).strip("._")[:80]
+    return f"pictures/{readable}-{hashlib.sha256(key.encode()).hexdigest()[:8]}.webp"
