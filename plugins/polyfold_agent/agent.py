@@ -23,9 +23,9 @@ _ActionMapLater = Callable[[], ActionMap] | None
 class PolyFoldAgent:
     """Splits the instruction, then per subgoal: ground the picture, plan a fold line, choose picks and places.
 
-    After each fold the next picture tells whether it took effect (:mod:`polyfold.recovery`). Cloth that an arm missed
-    or left astray is carried to where it belongs; in other cases the policy folds what is still left of the line once
-    more. A fold is set right a bounded number of times. The line moves with a garment that was displaced.
+    After each fold the next picture tells whether it took effect (:mod:`polyfold_agent.recovery`). Cloth that an arm
+    missed or left astray is carried to where it belongs; in other cases the policy folds what is still left of the line
+    once more. A fold is set right a bounded number of times. The line moves with a garment that was displaced.
     """
 
     requires: ClassVar[frozenset[str]] = frozenset({"instruction"})
