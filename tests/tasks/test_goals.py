@@ -15,7 +15,8 @@ from polyfold.errors import ConfigError
 from polyfold.evaluation import Reference, reference_for, suite
 from polyfold.geometry import fill_polygon, rotate
 from polyfold.studies import cells, evaluate_cell
-from polyfold.tasks import Bounds, load_suite, measure
+from polyfold.tasks import load_suite
+from polyfold.tasks._goals import Bounds, measure
 from polyfold.viz.report import report_html
 
 SIZE = 400
@@ -163,21 +164,37 @@ class TestFile:
         assert found.entry("smaller").instructions == ("Make it smaller.",)
         with pytest.raises(ConfigError, match="no task 'smaller'"):
             found.task("smaller")
-        with pytest.raises(ConfigError, match="did you mean smaller"):
+        with pytest.raises(ConfigError, match="did you mean 'smaller'"):
             found.entry("smalle")
 
     @pytest.mark.parametrize(
         ("old", "new", "words"),
         [
-            ("area_max", "area", r"goal smaller, field done\.area: Extra inputs"),
-            ("area_max = 0.6", "area_max = 60", r"goal smaller, field done\.area_max"),
-            ("area_max = 0.6", "area_max = 0.6, area_min = 0.7", r"goal smaller, field done: area_min 0.7 is above"),
-            ("area_max = 0.6", "steps_max = 1, steps_min = 2", r"goal smaller, field done: steps_min 2 is above"),
-            ("{ area_max = 0.6 }", "{}", "goal smaller, field done: it has no bound"),
-            ('text = "Make it smaller."', "", "goal smaller, field text: Field required"),
-            ('id = "smaller"', "", "goal number 1, field id"),
-            ('["square-corners-all"]', '["a", "a"]', "goal smaller, field accept: the task 'a' is named twice"),
-            ('accept = ["square-corners-all"]\ndone = { area_max = 0.6 }', "", "goal smaller, .*nothing counts"),
+            ("area_max", "area", r"goal smaller has no setting 'done\.area'"),
+            ("area_max = 0.6", "area_max = 60", r"goal smaller has a bad value for 'done\.area_max'"),
+            (
+                "area_max = 0.6",
+                "area_max = 0.6, area_min = 0.7",
+                r"goal smaller has a bad value for 'done': area_min 0.7 is above",
+            ),
+            (
+                "area_max = 0.6",
+                "steps_max = 1, steps_min = 2",
+                r"goal smaller has a bad value for 'done': steps_min 2 is above",
+            ),
+            ("{ area_max = 0.6 }", "{}", "goal smaller has a bad value for 'done': it has no bound"),
+            ('text = "Make it smaller."', "", "goal smaller has no 'text'; add it"),
+            ('id = "smaller"', "", "goal number 1 has no 'id'; add it"),
+            (
+                '["square-corners-all"]',
+                '["a", "a"]',
+                "goal smaller has a bad value for 'accept': the task 'a' is named twice",
+            ),
+            (
+                'accept = ["square-corners-all"]\ndone = { area_max = 0.6 }',
+                "",
+                "goal smaller can't be used: nothing counts",
+            ),
             (VALID[VALID.index("[[goal]]") :], "", "the suite is empty"),
             ('id = "smaller"', 'id = "diagonal"', "the id 'diagonal' is used twice"),
         ],
@@ -191,7 +208,7 @@ class TestFile:
     @pytest.mark.parametrize(
         ("old", "new", "words"),
         [
-            ("square-corners-all", "square-corners-al", "field accept: .*did you mean square-corners-all"),
+            ("square-corners-all", "square-corners-al", "field accept: .*did you mean 'square-corners-all'"),
             ("square-corners-all", "tshirt-half-hem", "field accept: tshirt-half-hem is for a tshirt"),
             ('name = "mine"', 'name = "mine"\naccept_from = "polyfold7"', "field accept: .*polyfold7.*accept_from"),
         ],
@@ -263,30 +280,30 @@ class TestStudy:
         return polyfold.run(study, tmp_path / "run", progress=False)
 
     def test_goals_are_judged_by_accepted_tasks_or_their_own_bounds(self, results, tmp_path):
-        ours, oracle, noop = ({r["task"]: r for r in results.of(name)} for name in results.study.variants)
+        ours, oracle, noop = ({r.task: r for r in results.of(name)} for name in results.study.variants)
 
-        assert ours["half"]["success"] == {"polyfold": True, "strict": True}, "bounds count under both"
-        assert ours["half"]["metrics"] == {"miou": None, "moved-part": None, "mppe": None}
-        assert ours["half"]["done"]["holds"]
-        assert ours["half"]["done"]["measured"]["area"] == pytest.approx(0.5, abs=0.05)
-        assert ours["half"]["steps_wanted"] is None
+        assert ours["half"].success == {"lenient": True, "strict": True}, "bounds count under both"
+        assert ours["half"].metrics == {"miou": None, "moved-part": None, "mppe": None}
+        assert ours["half"].done.holds
+        assert ours["half"].done.measured["area"] == pytest.approx(0.5, abs=0.05)
+        assert ours["half"].steps_wanted is None
 
-        assert not ours["tiny"]["success"]["polyfold"]
-        assert ours["tiny"]["done"]["failing"] == ["area_max", "rectangular_min"]
-        assert ours["tiny"]["cause"] == "subgoal", "the fold came out as planned"
-        assert (ours["nonsense"]["failure"]["stage"], ours["nonsense"]["cause"]) == ("refused", "subgoal")
+        assert not ours["tiny"].success["lenient"]
+        assert ours["tiny"].done.failing == ("area_max", "rectangular_min")
+        assert ours["tiny"].cause == "subgoal", "the fold came out as planned"
+        assert (ours["nonsense"].failure.stage, ours["nonsense"].cause) == ("refused", "subgoal")
 
-        assert ours["triangle"]["success"]["polyfold"], "the second of the accepted tasks"
-        assert ours["triangle"]["done"] is None
-        assert ours["triangle"]["metrics"]["miou"] > 0.9
-        assert oracle["triangle"]["metrics"] == {"miou": 1.0, "moved-part": 0.0, "mppe": 0.0}, "guided by the first"
+        assert ours["triangle"].success["lenient"], "the second of the accepted tasks"
+        assert ours["triangle"].done is None
+        assert ours["triangle"].metrics["miou"] > 0.9
+        assert oracle["triangle"].metrics == {"miou": 1.0, "moved-part": 0.0, "mppe": 0.0}, "guided by the first"
 
-        assert oracle["half"]["failure"]["stage"] == oracle["half"]["cause"] == "infrastructure"
-        assert "half accepts none" in oracle["half"]["failure"]["reason"]
-        assert oracle["half"]["privileged"]
+        assert oracle["half"].failure.stage == oracle["half"].cause == "infrastructure"
+        assert "half accepts none" in oracle["half"].failure.reason
+        assert oracle["half"].privileged
 
-        assert not any(record["success"]["polyfold"] for record in noop.values())
-        assert {record["cause"] for record in noop.values()} == {"subgoal"}
+        assert not any(record.success["lenient"] for record in noop.values())
+        assert {record.cause for record in noop.values()} == {"subgoal"}
 
         table = polyfold.table(results)
         assert "nearest task that each accepts" in table.note
@@ -322,4 +339,4 @@ class TestStudy:
             base={"agent": "oracle"},
         )
         record = evaluate_cell(study, next(cells(study)))
-        assert record["success"] == {"polyfold": not mixed, "strict": not mixed}
+        assert record.success == {"lenient": not mixed, "strict": not mixed}

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from laid_flat import KINDS, SUITE, lay
 
 from polyfold.geometry import FoldLine, fill_polygon, iou
-from polyfold.tasks import fidelity, fold_ideally, fold_lines
-from polyfold.tasks._ideal import LAYER_THICKNESS, fold_step_by_step
+from polyfold.tasks import fold_ideally, fold_lines
+from polyfold.tasks._ideal import LAYER_THICKNESS, fidelity, fold_step_by_step
 from polyfold.types import SimState
 
 pixel = st.floats(60, 340)
