@@ -11,6 +11,8 @@ from polyfold.analysis import Results, estimate, open_results, provider_table
 from polyfold.analysis._providers import MEASURES, measured
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError
+from polyfold.logs import accounts, transcript_lines
+from polyfold.logs._records import FailureRecord
 from polyfold.rollout import Transcript
 from polyfold.types import Reply
 from polyfold.viz import provider_figure
@@ -86,8 +88,8 @@ def test_tokens_and_cost_are_those_of_an_episode_and_latency_that_of_a_call(resu
     assert found["tokens in"].startswith(f"{2.5 * ASKED:.0f} ")
     assert found["tokens out"].startswith(f"{2.5 * ANSWERED:.0f} ")
     assert found["cost [US$]"].startswith(f"{2.5 * PRICE:.4f} ")
-    accounts = [account for record in results.of("paid") for account in record["language"].values()]
-    per_call = sum(account["latency_s"] for account in accounts) / 5
+    of_paid = [account for record in results.of("paid") for account in record.language.values()]
+    per_call = sum(account.latency_s for account in of_paid) / 5
     assert measured(results.of("paid"), "latency [s/call]").mean == pytest.approx(per_call)
 
 
@@ -104,42 +106,44 @@ def test_what_is_unknown_is_a_dash_and_never_nothing(results):
 def test_success_is_the_same_figure_as_in_every_table(results):
     for variant in results.study.variants:
         records = results.of(variant)
-        assert measured(records, "success %") == estimate([100.0 * r["success"]["polyfold"] for r in records])
+        assert measured(records, "success %") == estimate([100.0 * r.succeeded for r in records])
 
 
 def changed(results, variant, **changes):
     """The results with the last record of a variant changed."""
     last = results.of(variant)[-1]
-    return Results(results.study, [{**r, **changes} if r is last else r for r in results.records])
+    return Results(results.run, [r.model_copy(update=changes) if r is last else r for r in results.records])
+
+
+def accounted(record, **changes):
+    """The accounts of an episode with some figures changed."""
+    return {role: account.model_copy(update=changes) for role, account in record.language.items()}
 
 
 def test_failures_are_counted_by_their_first_cause(results):
-    failed = changed(results, "paid", cause="subgoal", success={"polyfold": False, "strict": False})
+    failed = changed(results, "paid", cause="subgoal", success={"lenient": False, "strict": False})
     found = rows(failed)["paid"]
     assert found["subgoal failures %"].startswith("50.0")
     assert found["fold-line failures %"].startswith("0.0")
 
 
 def test_a_cost_that_some_episodes_lack_says_on_how_many_it_rests(results):
-    language = {role: {**account, "cost": None} for role, account in results.of("paid")[-1]["language"].items()}
-    assert rows(changed(results, "paid", language=language))["paid"]["cost [US$]"].endswith("(n=1)")
+    language = accounted(results.of("paid")[-1], cost=None)
+    assert rows(changed(results, "paid", recorded_language=language))["paid"]["cost [US$]"].endswith("(n=1)")
 
 
 def test_the_note_says_what_was_recorded_and_what_was_never_answered(results):
-    language = {role: {**a, "origins": ["recorded"]} for role, a in results.of("paid")[-1]["language"].items()}
-    assert "Answers: recorded (paid)" in provider_table(changed(results, "paid", language=language)).note
-    unanswered = changed(results, "hasty", failure={"stage": "unanswered", "message": "429"})
+    language = accounted(results.of("paid")[-1], origins=("recorded",))
+    assert "Answers: recorded (paid)" in provider_table(changed(results, "paid", recorded_language=language)).note
+    unanswered = changed(results, "hasty", failure=FailureRecord(stage="unanswered", reason="429"))
     assert "hasty 1" in provider_table(unanswered).note
     assert "hasty 1" not in provider_table(results).note
 
 
 def test_runs_from_before_validity_was_counted_still_open(results):
-    counted = ("questions", "valid_at_once", "valid")
-    language = {
-        role: {name: value for name, value in account.items() if name not in counted}
-        for role, account in results.of("paid")[0]["language"].items()
-    }
-    old = Results(results.study, [{**record, "language": language} for record in results.of("paid")])
+    uncounted = dict.fromkeys(("questions", "valid_at_once", "valid"))
+    records = [r.model_copy(update={"recorded_language": accounted(r, **uncounted)}) for r in results.of("paid")]
+    old = Results(results.run, records)
     assert rows(old)["paid"]["valid at once %"] == "–"
 
 
@@ -183,17 +187,16 @@ def asked(transcript, role, step, *rejected):
             transcript.reject(reason)
 
 
-def test_accounts_count_questions_and_not_answers(tmp_path):
+def test_accounts_count_questions_and_not_answers():
     transcript = Transcript(Scripted(*"abcdef", ConfigError("down")))
     asked(transcript, "fold_line", 0, None)
     asked(transcript, "fold_line", 1, "no JSON", None)
     asked(transcript, "fold_line", 2, "no JSON", "no JSON", "no JSON")
     with pytest.raises(ConfigError):
         asked(transcript, "fold_line", 3, None)
-    account = transcript.accounts()["fold_line"]
-    assert (account["calls"], account["questions"], account["valid_at_once"], account["valid"]) == (7, 3, 1, 2)
-    transcript.write(tmp_path / "transcript.jsonl")
-    lines = [json.loads(line) for line in (tmp_path / "transcript.jsonl").read_text("utf-8").splitlines()]
+    account = accounts(transcript.calls)["fold_line"]
+    assert (account.calls, account.questions, account.valid_at_once, account.valid) == (7, 3, 1, 2)
+    lines = [json.loads(line) for line in transcript_lines(transcript.calls).splitlines()]
     assert [line.get("rejected") for line in lines] == [None, "no JSON", None, *["no JSON"] * 3, None]
 
 

@@ -7,42 +7,51 @@ import time
 import pytest
 
 from polyfold.errors import ConfigError
-from polyfold.logs import RunDirectory
+from polyfold.logs import Fingerprint, KeyedRecord, RunDirectory, read_run
+
+
+class Score(KeyedRecord):
+    score: float
+    text: str = ""
+
 
 WRITER = """
 import sys
-from polyfold.logs import RunDirectory
-run = RunDirectory(sys.argv[1], {"suite": "x"})
-done = set(run.episodes())
+from polyfold.logs import KeyedRecord, RunDirectory
+class Score(KeyedRecord):
+    score: float
+    text: str = ""
+run = RunDirectory(sys.argv[1], {"suite": "x"}, Score)
+done = set(run.records())
 for number in range(100000):
     if str(number) not in done:
-        run.append(str(number), {"score": number, "text": "x" * 2000})
+        run.append(Score(key=str(number), score=number, text="x" * 2000))
 """
 
 
 def test_half_written_line_is_dropped_and_the_rest_kept(tmp_path):
-    run = RunDirectory(tmp_path, {"a": 1})
-    run.append("one", {"score": 0.5})
+    run = RunDirectory(tmp_path, {"a": 1}, Score)
+    run.append(Score(key="one", score=0.5))
     with (tmp_path / "episodes.jsonl").open("a") as file:
         file.write('{"key": "two", "sco')
-    again = RunDirectory(tmp_path, {"a": 1})
-    assert list(again.episodes()) == ["one"]
-    again.append("two", {"score": 0.6})
-    assert [record["score"] for record in RunDirectory(tmp_path, {"a": 1}).episodes().values()] == [0.5, 0.6]
+    again = RunDirectory(tmp_path, {"a": 1}, Score)
+    assert list(again.records()) == ["one"]
+    again.append(Score(key="two", score=0.6))
+    assert [record.score for record in RunDirectory(tmp_path, {"a": 1}, Score).records().values()] == [0.5, 0.6]
 
 
 def test_another_configuration_is_refused_with_the_difference(tmp_path):
-    RunDirectory(tmp_path, {"policy": "caso", "n": 3})
+    RunDirectory(tmp_path, {"policy": "caso", "n": 3}, Score)
     with pytest.raises(ConfigError, match=r"policy: 'caso' there, 'farthest' here"):
-        RunDirectory(tmp_path, {"policy": "farthest", "n": 3})
+        RunDirectory(tmp_path, {"policy": "farthest", "n": 3}, Score)
 
 
 def test_unknown_schema_version_is_refused(tmp_path):
-    RunDirectory(tmp_path, {})
+    RunDirectory(tmp_path, {}, Score)
     description = tmp_path / "run.json"
-    description.write_text(description.read_text().replace('"schema_version": 1', '"schema_version": 99'))
+    description.write_text(description.read_text().replace('"schema_version": 2', '"schema_version": 99'))
     with pytest.raises(ConfigError, match="99"):
-        RunDirectory(tmp_path, {})
+        RunDirectory(tmp_path, {}, Score)
 
 
 def test_survives_sigkill_and_resumes_without_loss_or_repetition(tmp_path):
@@ -59,6 +68,38 @@ def test_survives_sigkill_and_resumes_without_loss_or_repetition(tmp_path):
             time.sleep(0.005)
         os.kill(child.pid, signal.SIGKILL)
         child.wait()
-    keys = [int(key) for key in RunDirectory(tmp_path, {"suite": "x"}).episodes()]
+    keys = [int(key) for key in RunDirectory(tmp_path, {"suite": "x"}, Score).records()]
     assert keys == list(range(len(keys)))
     assert len(keys) > 10
+
+
+BEFORE = Fingerprint(
+    distributions={"my-plugin": "0.1.0"}, sources={"my_plugin": "a" * 64}, prompts={"subgoals@v1": "b" * 64}
+)
+AFTER = Fingerprint(
+    distributions={"my-plugin": "0.2.0"}, sources={"my_plugin": "c" * 64}, prompts={"subgoals@v1": "b" * 64}
+)
+
+
+def test_what_other_code_made_is_not_added_to(tmp_path):
+    run = RunDirectory(tmp_path, {}, Score, BEFORE)
+    run.guard(BEFORE)
+    run.append(Score(key="one", score=1.0))
+    again = RunDirectory(tmp_path, {}, Score, AFTER)
+    with pytest.raises(ConfigError, match=r"version of my-plugin: 0\.1\.0 then, 0\.2\.0 now.*--accept-change"):
+        again.guard(AFTER)
+    again.guard(AFTER, accept_change=True)
+    (change,) = read_run(tmp_path).changes
+    assert change.episodes == 1
+    assert "source of my_plugin: aaaaaaaaaaaa then, cccccccccccc now" in change.differences
+    RunDirectory(tmp_path, {}, Score, AFTER).guard(AFTER)
+    with pytest.raises(ConfigError, match="my-plugin"):
+        RunDirectory(tmp_path, {}, Score, BEFORE).guard(BEFORE)
+
+
+def test_a_run_without_an_episode_takes_what_there_is_now(tmp_path):
+    RunDirectory(tmp_path, {}, Score, BEFORE)
+    run = RunDirectory(tmp_path, {}, Score, AFTER)
+    run.guard(AFTER)
+    assert read_run(tmp_path).fingerprint == AFTER
+    assert read_run(tmp_path).changes == ()

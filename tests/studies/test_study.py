@@ -16,7 +16,7 @@ from polyfold.evaluation import reference_for, suite
 from polyfold.studies import cells, evaluate, experiment_of
 
 SMALL = {"name": "small", "tasks": ("square-corner-*",), "garments": 2, "first_seed": 2000, "edge_length": 0.03}
-TIMES = ("seconds", "language", "peak_memory_mb")
+TIMES = {"seconds", "calls", "started", "finished", "peak_memory_mb"}
 
 
 @pytest.fixture(autouse=True)
@@ -25,14 +25,16 @@ def _own_cache(tmp_path_factory, monkeypatch):
 
 
 def untimed(records):
-    return [{name: value for name, value in record.items() if name not in TIMES} for record in records]
+    """All that is not a time; steps are without their seconds."""
+    dumped = [record.model_dump(exclude=TIMES) for record in records]
+    return [{**record, "steps": [{**step, "seconds": None} for step in record["steps"]]} for record in dumped]
 
 
 def test_cells_are_every_combination_once_with_seeds_of_their_own():
     study = polyfold.ablate(polyfold.Study(**SMALL), "policy", ["caso", "farthest"])
     found = list(cells(study))
     assert len({cell.key for cell in found}) == len(found) == 4 * 2 * 2
-    assert [cell.seed for cell in found] == [cell.seed for cell in cells(study)]
+    assert [cell.agent_seed for cell in found] == [cell.agent_seed for cell in cells(study)]
     assert {cell.wording for cell in found} == {0, 1}, "the wordings take turns"
 
 
@@ -69,8 +71,9 @@ def test_study_files_say_what_is_wrong(tmp_path):
 def test_oracle_is_perfect_and_noop_never_succeeds(tmp_path):
     study = polyfold.ablate(polyfold.Study(**SMALL), "agent", ["oracle", "noop"])
     results = polyfold.run(study, tmp_path, progress=False)
-    assert all(record["metrics"] == {"miou": 1.0, "moved-part": 0.0, "mppe": 0.0} for record in results.of("oracle"))
-    assert not any(record["success"]["polyfold"] for record in results.of("noop"))
+    perfect = {"miou": 1.0, "moved-part": 0.0, "mppe": 0.0}
+    assert all({name: record.metrics[name] for name in perfect} == perfect for record in results.of("oracle"))
+    assert not any(record.succeeded for record in results.of("noop"))
     text = polyfold.table(results).markdown()
     assert "| oracle * | square | 8 |" in text, "privileged agents are marked"
     difference = polyfold.compare(results, "oracle", "noop")
@@ -105,11 +108,13 @@ def test_killed_at_any_moment_it_goes_on_without_loss_or_repetition(tmp_path):
             time.sleep(0.01)
         os.kill(child.pid, signal.SIGKILL)
         child.wait()
-    resumed = evaluate(polyfold.load(config), tmp_path / "run", progress=False)
+    resumed = polyfold.run(polyfold.load(config), tmp_path / "run", progress=False).records
     keys = [json.loads(line)["key"] for line in episodes.read_text().splitlines()]
     assert len(keys) == len(set(keys)) == 12
-    assert evaluate(polyfold.load(config), tmp_path / "run", workers=2, progress=False) == resumed, "nothing is missing"
-    undisturbed = evaluate(polyfold.load(config), tmp_path / "other", progress=False)
+    assert polyfold.run(polyfold.load(config), tmp_path / "run", workers=2, progress=False).records == resumed, (
+        "nothing is missing"
+    )
+    undisturbed = polyfold.run(polyfold.load(config), tmp_path / "other", progress=False).records
     assert untimed(resumed) == untimed(undisturbed)
 
 
@@ -139,8 +144,8 @@ def test_cloth_that_is_out_of_sight_scores_nothing_and_the_study_goes_on(tmp_pat
         records = evaluate(study, tmp_path, progress=False)
     finally:
         polyfold.plugins.unregister("segmenters", "blind")
-    assert [record["metrics"]["miou"] for record in records] == [0.0] * 8
-    assert not any(record["success"]["polyfold"] for record in records)
+    assert [record.metrics["miou"] for record in records] == [0.0] * 8
+    assert not any(record.succeeded for record in records)
 
 
 def test_references_have_no_faults():
@@ -166,8 +171,8 @@ def test_tasks_are_chosen_by_split_and_number_of_folds():
 def test_an_oracle_with_its_particles_in_another_order_gives_the_noise_floor(tmp_path):
     base = polyfold.Study(**{**SMALL, "garments": 1}, base={"agent": "oracle"})
     results = polyfold.run(polyfold.ablate(base, "simulator.order", [1, 5]), tmp_path, progress=False)
-    assert all(record["metrics"]["mppe"] == 0 for record in results.of("1"))
-    assert all(0 < record["metrics"]["mppe"] < 5 for record in results.of("5")), "another order, the same physics"
+    assert all(record.metrics["mppe"] == 0 for record in results.of("1"))
+    assert all(0 < record.metrics["mppe"] < 5 for record in results.of("5")), "another order, the same physics"
     assert "Noise floor" in polyfold.table(results, noise=results).markdown()
 
 
@@ -175,8 +180,8 @@ def test_against_the_ideal_a_good_fold_is_near_but_not_perfect(tmp_path):
     settings = {**SMALL, "garments": 1, "edge_length": 0.02}
     study = polyfold.Study(**settings, reference="ideal", base={"agent": "oracle"})
     results = polyfold.run(study, tmp_path, progress=False)
-    assert all(record["success"]["polyfold"] for record in results.records)
-    assert all(record["metrics"]["mppe"] > 0.5 for record in results.records)
+    assert all(record.succeeded for record in results.records)
+    assert all(record.metrics["mppe"] > 0.5 for record in results.records)
     assert "folded geometrically" in polyfold.table(results).note
 
 
@@ -187,8 +192,8 @@ def test_parameters_of_metrics_count_and_wrong_ones_are_refused(tmp_path):
         polyfold.run(polyfold.Study(**quick, metrics=metrics), tmp_path / name, progress=False).records[0]
         for name, metrics in (("plain", {}), ("aligned", {"mppe": {"align": True}}))
     )
-    assert aligned["metrics"]["mppe"] < 0.2 < 5 < plain["metrics"]["mppe"], "only the place on the table differs"
-    assert aligned["metrics"]["moved-part"] == plain["metrics"]["moved-part"]
+    assert aligned.metrics["mppe"] < 0.2 < 5 < plain.metrics["mppe"], "only the place on the table differs"
+    assert aligned.metrics["moved-part"] == plain.metrics["moved-part"]
     with pytest.raises(ConfigError, match="did you mean 'align'"):
         list(cells(polyfold.Study(**quick, metrics={"mppe": {"aline": True}})))
 
@@ -199,27 +204,29 @@ def test_an_oracle_that_diverges_is_recorded_and_ends_no_study(tmp_path, monkeyp
 
     monkeypatch.setattr("polyfold.studies._cell.reference_for", diverges)
     records = evaluate(polyfold.Study(**{**SMALL, "garments": 1}), tmp_path, progress=False)
-    assert [record["cause"] for record in records] == ["infrastructure"] * 4
-    assert "the oracle failed" in records[0]["failure"]["reason"]
+    assert [record.cause for record in records] == ["infrastructure"] * 4
+    assert "the oracle failed" in records[0].failure.reason
     assert "–" in polyfold.table(open_results(tmp_path)).markdown()
 
 
 def test_policies_that_pick_at_vertices_run_on_oracle_fold_lines(tmp_path):
     base = {"agent": {"name": "oracle", "ground": True}, "policy": "vertex-random"}
     study = polyfold.Study(**{**SMALL, "garments": 1}, base=base)
-    assert not any(record["failure"] for record in evaluate(study, tmp_path, progress=False))
+    assert not any(record.failure for record in evaluate(study, tmp_path, progress=False))
 
 
 def test_tables_by_step_and_beside_published_figures(tmp_path):
     settings = {"tasks": ("square-corner-top_left", "square-corners-*left*right*"), "garments": 1}
     study = polyfold.Study(**{**SMALL, **settings}, published={"paper": {"square": 94.0, "pants": 79.6}})
     results = polyfold.run(study, tmp_path, progress=False)
-    assert {record["task"] for record in results.of_length("single").records} == {"square-corner-top_left"}
+    assert {record.task for record in results.of_length("single").records} == {"square-corner-top_left"}
     assert len(results.of_length("single").records) + len(results.of_length("multi").records) == len(results.records)
     by_step = polyfold.table(results, groups="step").markdown()
     assert "step 2" in by_step
     assert "| paper | square | – | – | – | – | 94.0 | – |" in polyfold.table(results).markdown()
     assert "79.6" not in polyfold.table(results).markdown(), "no pants were folded"
-    assert "moved-part" in polyfold.table(results, columns=["moved-part"]).headers
-    with pytest.raises(ConfigError, match="choose from"):
+    assert "moved part [mm]" in polyfold.table(results, columns=["moved-part"]).headers
+    with pytest.raises(ConfigError, match="did you mean 'moved-part'"):
         polyfold.table(results, columns=["moved"])
+    with pytest.raises(ConfigError, match="choose from MPPE"):
+        polyfold.table(results, columns=["elapsed"])

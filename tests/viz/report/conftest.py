@@ -1,7 +1,5 @@
-import json
-
 import pytest
-from made_up_runs import BAD, GOOD, TASKS, picture, record
+from made_up_runs import BAD, GOOD, TASKS, picture, record, run_record
 
 from polyfold.studies import Study
 
@@ -21,19 +19,14 @@ def make_run(tmp_path):
         )
         folder = tmp_path / "run"
         (folder / "pictures").mkdir(parents=True)
-        content = {
-            "schema_version": 1,
-            "config": {"study": study.model_dump(mode="json")},
-            "versions": {"numpy": "2.4.6"},
-        }
-        (folder / "run.json").write_text(json.dumps(content))
+        (folder / "run.json").write_text(run_record(study).model_dump_json())
         lines = []
         for number, made in enumerate(records):
             if pictured:
                 path = f"pictures/{number}.webp"
                 (folder / path).write_bytes(picture())
-                made = {**made, "picture": path}
-            lines.append(json.dumps(made) + "\n")
+                made = made.model_copy(update={"picture": path})
+            lines.append(made.model_dump_json() + "\n")
         (folder / "episodes.jsonl").write_text("".join(lines) + tail)
         return folder
 

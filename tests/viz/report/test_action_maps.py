@@ -9,7 +9,6 @@ from polyfold import plugins
 from polyfold.api import attempt
 from polyfold.errors import PlanError
 from polyfold.rollout import run_episode
-from polyfold.studies import evaluate
 from polyfold.types import Action
 from polyfold.viz.draw._style import MAP
 from polyfold.viz.report import write_report
@@ -53,11 +52,13 @@ def _registered(tmp_path_factory, monkeypatch):
 
 def run(out, *policies, pictures="all"):
     study = polyfold.Study(**SMALL, base={"agent": "oracle"})
-    return evaluate(polyfold.ablate(study, "policy", list(policies)), out, pictures=pictures, progress=False)
+    return polyfold.run(
+        polyfold.ablate(study, "policy", list(policies)), out, pictures=pictures, progress=False
+    ).records
 
 
 def opened(out, record):
-    with Image.open(out / record["picture"]) as picture:
+    with Image.open(out / record.picture) as picture:
         return np.asarray(picture.convert("RGB")).astype(int)
 
 
@@ -67,7 +68,7 @@ def coloured(picture, colour, tolerance=40):
 
 def test_the_report_shows_the_values_of_policies_that_have_some_and_says_so(tmp_path):
     plain, valued, unsure = run(tmp_path / "both", "plain", "valued", "unsure")
-    assert plain["metrics"] == valued["metrics"], "the same folds"
+    assert plain.metrics == valued.metrics, "the same folds"
     pictures = [opened(tmp_path / "both", record) for record in (plain, valued, unsure)]
     folds, results = [p[:, :264] for p in pictures], [p[:, 268:] for p in pictures]
     assert coloured(folds[1], MAP[-1]) > 20 > coloured(folds[0], MAP[-1])

@@ -107,7 +107,7 @@ def test_whatever_people_and_models_write_is_escaped(make_run):
         instruction=HOSTILE,
         type=HOSTILE,
         cause=HOSTILE,
-        garment=HOSTILE,
+        garment={"kind": HOSTILE},
         task=HOSTILE,
         subgoals=[HOSTILE],
         failure={"stage": HOSTILE, "reason": HOSTILE},
@@ -156,10 +156,9 @@ def test_a_run_without_pictures_says_how_to_get_them(make_run):
 
 def test_episodes_whose_reference_moved_nothing_are_named(make_run):
     idle = {"miou": 1.0, "mppe": 0.0, "moved-part": None}
-    success = {"success": {"polyfold": True, "strict": True}, "cause": None}
-    made = record("ours", "tshirt-half-left", 2001, GOOD) | {"metrics": idle} | success
+    made = record("ours", "tshirt-half-left", 2001, GOOD, metrics=idle, reference_idle=True)
     page = Page(report_html(make_run([made], ["ours"])))
-    assert "the oracle itself moved nothing" in page.text
+    assert "the reference itself moves nothing" in page.text
     assert "tshirt-half-left on tshirt 2001" in page.text
 
 
