@@ -36,13 +36,19 @@ class PolyFoldAgent:
 
         model_config = ConfigDict(frozen=True, extra="forbid")
 
-        recover: bool = Field(True, description="look whether a fold took effect and repeat it if not")
-        retries: int = Field(3, ge=0, le=10, description="times that one fold is repeated at most")
+        recover: bool = Field(default=True, description="look whether a fold took effect and repeat it if not")
+        retries: int = Field(default=3, ge=0, le=10, description="times that one fold is repeated at most")
         remaining: float = Field(
-            0.25, gt=0, lt=1, description="share of the flap's depth that, still left of the line, means a failed fold"
+            default=0.25,
+            gt=0,
+            lt=1,
+            description="share of the flap's depth that, still left of the line, means a failed fold",
         )
         astray: float = Field(
-            0.22, gt=0, lt=1, description="share of the flap's depth by which cloth beyond the expected outline does"
+            default=0.22,
+            gt=0,
+            lt=1,
+            description="share of the flap's depth by which cloth beyond the expected outline does",
         )
 
     def __init__(

@@ -29,7 +29,7 @@ class KeypointsGrounding:
         """Parameters of the fit to the flat garment, and of the contour's points."""
 
         tolerance_px: float = Field(
-            3.0,
+            default=3.0,
             gt=0.0,
             description="how far the contour may stray from the polygon of its corners [px at 150 x 150 px of cloth]",
         )

@@ -82,10 +82,11 @@ class Silhouette:
         self._boundary = resample(self._outline, 240)
         self.centre = (after.min(0) + after.max(0)) / 2
         if line is None:
-            self._pivot, self._angle = self.centre, 0.0
+            self._pivot, self._angle, self._half = self.centre, 0.0, 0.0
         else:
             start, end = np.array(line.start), np.array(line.end)
             self._pivot, self._angle = (start + end) / 2, float(np.arctan2(*(end - start)[::-1]))
+            self._half = line.length / 2
 
     @property
     def folds(self) -> bool:
@@ -137,11 +138,10 @@ class Silhouette:
 
     def line(self, parameters: Floats) -> FoldLine:
         """The refitted line, before the motion."""
-        half = self._line.length / 2
         angle = self._angle + parameters[4]
         along, left = np.array([np.cos(angle), np.sin(angle)]), np.array([np.sin(angle), -np.cos(angle)])
         middle = self._pivot + parameters[3] * left
-        return FoldLine.between(middle - half * along, middle + half * along)
+        return FoldLine.between(middle - self._half * along, middle + self._half * along)
 
     def _terms(self, parameters: Floats, precision: Floats, delta: float) -> _FoldTerms:
         evidence = self._evidence

@@ -224,4 +224,5 @@ def _smoothed(piece: Floats, sigma: float) -> Floats:
     before, after = 2 * piece[0] - piece[reach:0:-1], 2 * piece[-1] - piece[-2 : -reach - 2 : -1]
     kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
     extended = np.vstack([before, piece, after])
-    return np.column_stack([np.convolve(extended[:, axis], kernel / kernel.sum(), "valid") for axis in (0, 1)])
+    columns = [np.convolve(extended[:, axis], kernel / kernel.sum(), "valid") for axis in (0, 1)]
+    return np.asarray(np.column_stack(columns), float)

@@ -34,7 +34,7 @@ def contour_of(mask: NDArray[np.bool_]) -> Points:
     if not found:
         raise ValueError("the mask is empty; no cloth is visible")
     chain = (max(found, key=cv2.contourArea)[:, 0, :].astype(float) - 1.0) / 2.0
-    smooth = sum(np.roll(chain, shift, axis=0) for shift in range(-2, 3)) / 5.0
+    smooth = sum((np.roll(chain, shift, axis=0) for shift in range(-2, 3)), np.zeros_like(chain)) / 5.0
     return resample(smooth, max(8, len(smooth) // 2))
 
 

@@ -104,7 +104,7 @@ def resample(polyline: ArrayLike, count: int, closed: bool = True) -> Points:
 
 def chamfer(a: ArrayLike, b: ArrayLike) -> float:
     """Symmetric Chamfer distance ½ D(a, b) + ½ D(b, a), D the mean nearest distance (paper, Sec. III)."""
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     a, b = np.asarray(a, float), np.asarray(b, float)
-    return 0.5 * float(cKDTree(b).query(a)[0].mean()) + 0.5 * float(cKDTree(a).query(b)[0].mean())
+    return 0.5 * float(KDTree(b).query(a)[0].mean()) + 0.5 * float(KDTree(a).query(b)[0].mean())

@@ -19,12 +19,15 @@ class Generator(Protocol):
 
     def parameters(self, vertices: Floats) -> Floats:
         """Parameters whose polygon comes close to the given vertices, shape (P,)."""
+        ...
 
     def vertices(self, parameters: Floats) -> Floats:
         """The polygon, shape (V, 2)."""
+        ...
 
     def jacobian(self, parameters: Floats) -> Floats:
         """Derivatives of the vertices by the parameters, shape (V, 2, P)."""
+        ...
 
 
 class SymmetricGenerator:

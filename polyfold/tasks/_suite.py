@@ -216,6 +216,6 @@ def _first_problem(error: ValidationError, content: Mapping[str, Any]) -> str:
     if len(place) < 2 or place[0] not in ("task", "goal"):
         return f"the suite {validation_problem(error)} (see polyfold.tasks for the format)"
     kind, number = place[:2]
-    entry = content[kind][number]
+    entry = content[str(kind)][number]
     name = entry.get("id", f"number {int(number) + 1}") if isinstance(entry, dict) else f"number {int(number) + 1}"
     return f"{kind} {name} {validation_problem(error, below=2)} (see polyfold.tasks for the format)"
