@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.geometry import FoldLine
 from polyfold.polygon import FoldedModel, Template
 from polyfold.types import Observation, Scene
+from polyfold_grounding.evidence import Evidence
 
 __all__ = ["PolygonGrounding"]
 
@@ -18,7 +19,7 @@ __all__ = ["PolygonGrounding"]
 class PolygonGrounding:
     """Fits the garment's template to the silhouette, then follows it.
 
-    Implements :class:`polyfold.interfaces.Grounding`.
+    Implements :class:`polyfold.plugins.interfaces.Grounding`.
 
     The first picture is fitted from all rotations; corners of squares and rectangles are named there, by the edge
     nearest the image's top, and keep their names. After a fold the previous model is folded along the line and
@@ -51,13 +52,12 @@ class PolygonGrounding:
         previous: Scene | None = None,
         fold_line: FoldLine | None = None,
     ) -> Scene:
-        """Ground one picture; see :class:`polyfold.interfaces.Grounding`.
+        """Ground one picture; see :class:`polyfold.plugins.interfaces.Grounding`.
 
         Raises:
             GroundingError: if too little cloth is visible.
         """
-        from polyfold_grounding.evidence import Evidence
-        from polyfold_grounding.tracking import first_model, next_model
+        from polyfold_grounding.tracking import first_model, next_model  # imports numba
 
         evidence = Evidence.of(mask)
         if previous is None or previous.model is None:

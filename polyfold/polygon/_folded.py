@@ -92,9 +92,12 @@ class FoldedModel:
     def transformed(
         self, angle: float, translation: ArrayLike = (0.0, 0.0), centre: ArrayLike = (0.0, 0.0)
     ) -> FoldedModel:
-        """The whole model moved rigidly: turned by ``angle`` [rad] about ``centre`` [px], then shifted.
+        """The whole model moved rigidly.
 
-        The angle is positive from x towards y: clockwise as seen in the image.
+        Args:
+            angle: how far it is turned [rad], positive from x towards y: clockwise as seen in the image.
+            translation: how far it is shifted afterwards [px], shape (2,).
+            centre: what it is turned about [px], shape (2,).
         """
         shift = np.asarray(translation, float)
 

@@ -147,7 +147,7 @@ class Suite(BaseModel):
         return _of_id(self.entries, entry_id, self.name)
 
     def for_garment(self, kind: str) -> tuple[Task, ...]:
-        """The tasks on garments of this kind."""
+        """The tasks on garments of this garment kind."""
         return tuple(task for task in self.tasks if task.garment == kind)
 
 

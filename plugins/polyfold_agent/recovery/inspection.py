@@ -32,12 +32,12 @@ class Finding:
     """What went wrong with a fold.
 
     Attributes:
-        kind: ``missed`` when arms took nothing, ``astray`` when a part of the flap lies where it should not, ``left``
+        fault: ``missed`` when arms took nothing, ``astray`` when a part of the flap lies where it should not, ``left``
             when much of the flap is still on its side of the line.
         action: how to set it right; None where the whole fold should be chosen anew.
     """
 
-    kind: Literal["missed", "astray", "left"]
+    fault: Literal["missed", "astray", "left"]
     action: Action | None = None
 
 
