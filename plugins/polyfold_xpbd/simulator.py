@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import SimulationError
-from polyfold.garments import Garment, Mesh
+from polyfold.garments import Garment, Mesh, name_by_pose
 from polyfold.geometry import Camera
 from polyfold.types import Action, Observation, SimState
 
@@ -76,7 +76,7 @@ class XpbdSimulator:
         self._rank = np.argsort(self._order)
         self._solver = Solver(mesh, ((flat - centre) @ turn)[self._order], self.config)
         self._solver.settle(0.3)
-        self._keypoints = _named_as_seen(garment, self._solver.positions()[self._rank])
+        self._keypoints = name_by_pose(garment.cyclic, garment.keypoints, self._solver.positions()[self._rank])
         self._two_layers = garment.mesh.layers == 2
         self._outside_up = (garment.mesh.panel == 1) | (not self._two_layers)
         return self.observe()
@@ -170,15 +170,3 @@ def _renumbered(mesh: Mesh, order: int) -> tuple[NDArray[np.int64], Mesh]:
     count = len(mesh.vertices)
     numbering = np.arange(count) if order == 0 else np.random.default_rng(order).permutation(count)
     return numbering, mesh.renumbered(numbering)
-
-
-def _named_as_seen(garment: Garment, positions: NDArray[np.float64]) -> Mapping[str, int]:
-    """Keypoint names; those of a ``cyclic`` garment shift so that the edge nearest the image's top is the top."""
-    names = garment.cyclic
-    if not names:
-        return dict(garment.keypoints)
-    indices = [garment.keypoints[name] for name in names]
-    y = positions[indices, 1]
-    highest = int(np.argmax(y + np.roll(y, -1)))
-    shift = highest - 1
-    return {name: indices[(k + shift) % len(names)] for k, name in enumerate(names)}

@@ -43,11 +43,15 @@ def validation_problem(error: ValidationError, known: Iterable[str] = (), below:
         ``has a bad value for 'policy.gamma': Input should be less than 1; change it``.
     """
     problem = error.errors()[0]
-    said = problem["msg"].removeprefix("Value error, ")
-    if not problem["loc"]:
-        return f"has values that don't go together: {said}; change them"
     place = ".".join(str(part) for part in problem["loc"][below:])
     if problem["type"] == "extra_forbidden":
         known = list(known)
         return f"has no setting {place!r}; {did_you_mean(place, known) if known else 'remove it'}"
-    return f"has a bad value{f' for {place!r}' if place else ''}: {said}; change it"
+    if problem["type"] == "missing":
+        return f"has no {place!r}; add it"
+    said = problem["msg"].removeprefix("Value error, ")
+    # A model's own check may already say what to do.
+    advises = problem["type"] == "value_error" and ";" in said
+    if not place:
+        return f"can't be used: {said}" if advises else f"has values that don't go together: {said}; change them"
+    return f"has a bad value for {place!r}: {said}{'' if advises else '; change it'}"

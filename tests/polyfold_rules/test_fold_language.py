@@ -22,7 +22,8 @@ from polyfold.geometry import fill_polygon
 from polyfold.plugins import create, find
 from polyfold.prompts import load_prompt
 from polyfold.rollout import Transcript
-from polyfold.tasks import OpenTask, load_suite, measure
+from polyfold.tasks import OpenTask, load_suite
+from polyfold.tasks._goals import measure
 
 FAMILIES = {"square": "quad", "rectangle": "quad", "tshirt": "tshirt", "pants": "pants"}
 CONTENT = tomllib.loads((Path(__file__).parent / "phrasings.toml").read_text("utf-8"))

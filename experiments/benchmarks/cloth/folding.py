@@ -99,7 +99,7 @@ class Trial:
     def act(self, fold: Fold, now: SimState) -> Action:
         """The action for a fold from where the picked particles are now; moves ``ideal`` along."""
         line = self._line(fold)
-        self.ideal = np.where(line.lifts(self.ideal)[:, None], line.mirror(self.ideal), self.ideal)
+        self.ideal = line.fold(self.ideal)
         pixels = now.camera.to_pixels(now.positions)
         picks = np.array([pixels[self._particle(name)] for name in fold.picks])
         return Action(picks, np.clip(line.mirror(picks), 0, np.array(self._size)[::-1] - 1))
@@ -145,7 +145,7 @@ def cloth_mask(observation: Observation) -> NDArray[np.bool_]:
 
 
 def random_action(mask: NDArray[np.bool_], rng: np.random.Generator) -> tuple[Action, FoldLine]:
-    """A random fold line across a cloth, bool, shape (H, W); one pick on its outline, the other far from the first."""
+    """A random fold line across the cloth; one random pick on the outline left of it, the other far from the first."""
     outline = contour_of(mask)
     height, width = mask.shape
     while True:

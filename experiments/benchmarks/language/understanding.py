@@ -100,7 +100,7 @@ def folded_states(particles: NDArray[np.float64], lines: Sequence[FoldLine]) -> 
     states = [particles]
     for line in lines:
         now = states[-1]
-        states.append(np.where(line.lifts(now)[:, None], line.mirror(now), now))
+        states.append(line.fold(now))
     return states
 
 

@@ -1,4 +1,6 @@
-"""How well polygons are fitted: ``python -m polyfold.benchmark.fitting [--kind tshirt] [--n 200] [--folds] [--real]``.
+"""Measure how well polygons are fitted.
+
+    python -m experiments.benchmarks.fitting [--kind tshirt] [--n 200] [--folds] [--data DIR --real]
 
 Without a switch, camera images of simulated flat garments at any rotation. ``--folds`` follows them through the folds
 of the standard tasks, each drawn on the true garment and executed by a policy. ``--data DIR --real`` fits outlines of
@@ -16,6 +18,7 @@ import numpy as np
 from experiments.benchmarks.fitting.real import DATASETS, measure_real
 from experiments.benchmarks.fitting.simulated import FlatResult, FoldResult, measure_flat, measure_folds
 from polyfold import plugins
+from polyfold.plugins.interfaces import Grounding
 
 KINDS = ("square", "rectangle", "tshirt", "pants")
 
@@ -25,7 +28,8 @@ FAR = 25.0
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print markdown tables."""
-    parser = argparse.ArgumentParser(prog="polyfold.benchmark.fitting", description=__doc__.splitlines()[0])
+    description = "Measure how well polygons are fitted."
+    parser = argparse.ArgumentParser(prog="experiments.benchmarks.fitting", description=description)
     parser.add_argument("--kind", nargs="*", default=None, help="garment kinds (default: all)")
     parser.add_argument("--n", type=int, default=200, help="garments of each kind (default: 200)")
     parser.add_argument("--first-seed", type=int, default=5000, help="seed of the first garment (default: 5000)")
@@ -77,7 +81,7 @@ def _print_folds(kind: str, results: list[FoldResult]) -> None:
         )
 
 
-def _print_real(data: Path, kinds: Sequence[str], rows: str, grounding: object) -> None:
+def _print_real(data: Path, kinds: Sequence[str], rows: str, grounding: Grounding) -> None:
     print(f"\n| garment | rows | n | median [px] | p90 [px] | mean > {FAR:.0f} px | CPU median [s] | CPU max [s] |")
     print("|---|---|---|---|---|---|---|---|")
     for kind in kinds:
