@@ -13,9 +13,17 @@ from numpy.typing import ArrayLike, NDArray
 from polyfold import plugins
 from polyfold.config import Experiment
 from polyfold.errors import GarmentError
-from polyfold.garments import Garment, Pattern
-from polyfold.geometry import Camera
-from polyfold.geometry import _plane as geometry
+from polyfold.garments import (
+    Garment,
+    Pattern,
+    load_mask,
+    load_obj,
+    load_outline,
+    load_picture,
+    outline_from_photo,
+    twin_from_outline,
+)
+from polyfold.geometry import Camera, contour_of, fill_polygon
 from polyfold.types import Observation, Scene
 
 SPAN = 300.0
@@ -92,8 +100,6 @@ def garment(
         return generator.generate(seed) if edge_length is None else generator.generate(seed, edge_length)
     if mesh is not None:
         return _from_mesh(kind, mesh, keypoints, size, edge_length)
-    from polyfold.garments import twin_from_outline
-
     found = ground(kind, mask=mask, outline=outline, image=image, experiment=experiment)
     return twin_from_outline(found.outline, kind, found.keypoints, pattern_of(kind), size, edge_length)
 
@@ -109,8 +115,6 @@ def pattern_of(kind: str) -> Pattern:
 def _from_mesh(
     kind: str, mesh: str | Path, keypoints: str | Path | None, size: float | None, edge_length: float | None
 ) -> Garment:
-    from polyfold.garments import load_obj
-
     if keypoints is None:
         raise GarmentError("a mesh needs named keypoints; give a JSON file of keypoint name -> vertex index")
     return load_obj(mesh, keypoints, kind, pattern_of(kind), size, edge_length)
@@ -138,7 +142,7 @@ def ground(
     camera = Camera()
     shift = np.asarray(camera.centre) - scale * centre
     framed = scale * silhouette + shift
-    framed_mask = geometry.fill_polygon(framed, camera.height, camera.width)
+    framed_mask = fill_polygon(framed, camera.height, camera.width)
     rgb = _framed_photo(photo, scale, shift, camera) if photo is not None else _drawn(framed_mask)
     depth = np.full(framed_mask.shape, camera.elevation, np.float32)
     grounding = plugins.create_chosen(experiment or Experiment(), "grounding")
@@ -158,8 +162,6 @@ def outline_of(
     image: str | Path | None = None,
 ) -> tuple[Floats, NDArray[np.uint8] | None]:
     """The silhouette [px], shape (N, 2), of a mask, outline or photo, and the photo itself if that was given."""
-    from polyfold.garments import load_mask, load_outline, load_picture, outline_from_photo
-
     if image is not None:
         return outline_from_photo(image), load_picture(image)
     if outline is not None:
@@ -168,13 +170,11 @@ def outline_of(
     if mask is None:
         raise GarmentError("give a mask, an outline or an image of the garment")
     pixels: Any = load_mask(mask) if isinstance(mask, str | Path) else mask
-    return geometry.contour_of(np.asarray(pixels, bool)), None
+    return contour_of(np.asarray(pixels, bool)), None
 
 
 def is_mask(path: str | Path) -> bool:
     """Whether a picture file is a black-and-white mask rather than a photo."""
-    from polyfold.garments import load_picture
-
     pixels = load_picture(path)
     return bool(((pixels < 16) | (pixels > 239)).mean() > 0.99 and np.ptp(pixels.astype(int), axis=2).max() < 16)
 
@@ -185,7 +185,7 @@ def _framed_photo(photo: NDArray[np.uint8], scale: float, shift: Floats, camera:
     matrix = np.array([[scale, 0.0, shift[0]], [0.0, scale, shift[1]]])
     flags = cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR
     size = (camera.width, camera.height)
-    return cv2.warpAffine(photo, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(cv2.warpAffine(photo, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE), np.uint8)
 
 
 def _drawn(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
