@@ -45,7 +45,9 @@ class KeypointsGrounding:
         previous: Scene | None = None,
         fold_line: FoldLine | None = None,
     ) -> Scene:
-        """Ground one picture; see :class:`polyfold.interfaces.Grounding`. A garment is flat until a fold is made.
+        """Ground one picture; see :class:`polyfold.plugins.interfaces.Grounding`.
+
+        A garment is flat until a fold is made.
 
         Raises:
             GroundingError: if too little cloth is visible.

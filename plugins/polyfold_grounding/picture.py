@@ -32,7 +32,7 @@ class ImageGrounding:
         previous: Scene | None = None,
         fold_line: FoldLine | None = None,
     ) -> Scene:
-        """Ground one picture; see :class:`polyfold.interfaces.Grounding`."""
+        """Ground one picture; see :class:`polyfold.plugins.interfaces.Grounding`."""
         height, width = mask.shape
         text = json.dumps({"garment": template.kind, "image": {"width": width, "height": height}})
         contour = contour_of(mask)
@@ -55,7 +55,7 @@ class _WithPicture:
         previous: Scene | None = None,
         fold_line: FoldLine | None = None,
     ) -> Scene:
-        """Ground one picture; see :class:`polyfold.interfaces.Grounding`."""
+        """Ground one picture; see :class:`polyfold.plugins.interfaces.Grounding`."""
         scene = self._words.ground(observation, mask, template, previous, fold_line)
         return replace(scene, picture=observation.rgb, shown=(*scene.shown, "image"))
 

@@ -18,7 +18,7 @@ __all__ = ["PolygonGrounding"]
 class PolygonGrounding:
     """Fits the garment's template to the silhouette, then follows it.
 
-    Implements :class:`polyfold.interfaces.Grounding`.
+    Implements :class:`polyfold.plugins.interfaces.Grounding`.
 
     The first picture is fitted from all rotations; corners of squares and rectangles are named there, by the edge
     nearest the image's top, and keep their names. After a fold the previous model is folded along the line and
@@ -51,7 +51,7 @@ class PolygonGrounding:
         previous: Scene | None = None,
         fold_line: FoldLine | None = None,
     ) -> Scene:
-        """Ground one picture; see :class:`polyfold.interfaces.Grounding`.
+        """Ground one picture; see :class:`polyfold.plugins.interfaces.Grounding`.
 
         Raises:
             GroundingError: if too little cloth is visible.

@@ -32,7 +32,7 @@ class FaultySimulator:
         turn_deg: float = Field(10.0, ge=0, description="largest turn of a displaced garment [deg]")
 
     @classmethod
-    def faultless(cls, config: Config) -> tuple[str, dict[str, Any]]:
+    def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:
         """The simulator that references are made in: they must not have the faults."""
         return config.inner, {}
 

@@ -22,7 +22,7 @@ __all__ = ["XpbdSimulator"]
 
 
 class XpbdSimulator:
-    """Cloth on a table under a camera. Implements :class:`polyfold.interfaces.Simulator`.
+    """Cloth on a table under a camera. Implements :class:`polyfold.plugins.interfaces.Simulator`.
 
     The garment is laid with its bounding circle in the middle of the image, turned by an angle drawn from the seed.
     Grippers hold all layers within 15 mm of a pick and lay them down at the place along half an ellipse. A pick off

@@ -24,6 +24,7 @@ from polyfold.garments import (
     twin_from_outline,
 )
 from polyfold.geometry import Camera, contour_of, fill_polygon
+from polyfold.plugins.interfaces import SewnKind
 from polyfold.types import Observation, Scene
 
 SPAN = 300.0
@@ -106,10 +107,10 @@ def garment(
 
 def pattern_of(kind: str) -> Pattern:
     """How a kind of garment is sewn. Raises GarmentError if its class does not say."""
-    pattern = getattr(plugins.component_class("garments", kind), "pattern", None)
-    if pattern is None:
+    cls = plugins.component_class("garments", kind)
+    if not isinstance(cls, SewnKind):
         raise GarmentError(f"the garment kind {kind!r} does not say how it is sewn; give its class a `pattern`")
-    return pattern
+    return cls.pattern
 
 
 def _from_mesh(

@@ -22,6 +22,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment
+from polyfold.plugins import hookspecs
 from polyfold.prompts import load_prompt
 
 CORE = ("geometry", "polygon", "garments", "types", "tasks", "plugins", "rollout", "evaluation", "studies")
@@ -120,11 +121,13 @@ def fingerprint(
         sources[source.name] = source.digest
         if source.folder is not None:
             folders[source.name] = source.folder
-        for name in plugins.prompts_of(kind, spec):
+        if kind == "tasks":  # a file, and no class
+            continue
+        for name in plugins.prompts_read(kind, spec):
             role, _, prompt_version = name.partition("@")
             prompt = load_prompt(role, prompt_version)
             prompts[prompt.name] = prompt.sha256
-        for path in plugins.files_of(kind, spec):
+        for path in plugins.files_read(kind, spec):
             files[path.name] = _digest_of_file(path)
     git = _git_states(folders) if commits else {}
     return Fingerprint(distributions=distributions, sources=sources, prompts=prompts, files=files, git=git)
@@ -140,7 +143,7 @@ def _specs(experiment: Experiment) -> Iterator[tuple[str, ComponentSpec]]:
         spec = getattr(experiment, field)
         if not isinstance(spec, ComponentSpec):
             continue
-        kind = plugins.plural(field)
+        kind = hookspecs.plural(field)
         yield kind, spec
         known = plugins.names(kind)
         for value in plugins.parameters(kind, spec).values():

@@ -21,7 +21,7 @@ Image = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False)
-class Guidance:
+class PrivilegedInputs:
     """Accurate help for one garment as it lies.
 
     Attributes:
@@ -40,8 +40,8 @@ class Guidance:
         return self.subgoal_images[-1]
 
 
-def guidance_for(task: Task, garment: Garment, flat: SimState, seen: Observation) -> Guidance:
-    """Make the guidance for a task on a garment that lies flat.
+def privileged_inputs(task: Task, garment: Garment, flat: SimState, seen: Observation) -> PrivilegedInputs:
+    """Make them for a task on a garment that lies flat.
 
     Args:
         task: the task; its kind must be the garment's.
@@ -52,7 +52,7 @@ def guidance_for(task: Task, garment: Garment, flat: SimState, seen: Observation
     lines = fold_lines(task, flat.keypoint_pixels())
     masks = (fold_ideally(flat, garment.mesh, lines[: count + 1]).mask for count in range(len(lines)))
     images = tuple(_drawn(mask, garment.colours[0], seen.rgb[0, 0]) for mask in masks)
-    return Guidance(tuple(lines), tuple(describe(fold) for fold in task.steps), images)
+    return PrivilegedInputs(tuple(lines), tuple(describe(fold) for fold in task.steps), images)
 
 
 def _drawn(mask: NDArray[np.bool_], cloth: tuple[int, int, int], table: Image) -> Image:

@@ -54,7 +54,7 @@ def action_map_sheet(
     """For the first fold of each task: the fold line, the values over the lifted contour with the picks, the result.
 
     Args:
-        policy: one with a map (:class:`polyfold.interfaces.ValuesPicks`).
+        policy: one with a map (:class:`polyfold.plugins.interfaces.ValuesPicks`).
         tasks: ids of tasks of the installed suites.
         seed: of the garments.
         path: PNG to write.
