@@ -4,13 +4,8 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from polyfold.config import Experiment
-    from polyfold.garments import Garment
-
-__all__ = ["add_source_options", "garment_from"]
+import polyfold
 
 
 def add_source_options(parser: argparse.ArgumentParser) -> None:
@@ -28,11 +23,9 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     twin.add_argument("--size", type=float, metavar="METRES", help="longest side of the real garment's bounding box")
 
 
-def garment_from(arguments: argparse.Namespace, experiment: Experiment) -> Garment:
+def garment_from(arguments: argparse.Namespace, experiment: polyfold.Experiment) -> polyfold.Garment:
     """The garment that the options describe. Raises GarmentError or GroundingError with what to do."""
-    from polyfold.api import garment
-
-    return garment(
+    return polyfold.garment(
         arguments.garment,
         seed=arguments.seed,
         mask=arguments.mask,
