@@ -10,12 +10,10 @@ from polyfold.geometry import FoldLine, signed_distance
 from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
 from polyfold.types import Reply, Scene, Subgoal
-from polyfold_planning.decomposition import SubgoalsConfig, split
+from polyfold_planning.decomposition import DecompositionConfig, decompose
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import answer_object, fold_line_in
-from polyfold_planning.scenes import prompt_about, prompts_about, shown_values
-
-__all__ = ["HierarchicalPlanner"]
+from polyfold_planning.scene_prompts import prompt_for, prompt_inputs, prompts_for_scenes
 
 MIN_LENGTH = 10.0
 """Shortest fold line with a trustworthy direction [px]."""
@@ -27,22 +25,22 @@ MIN_SHARE = 0.005
 class HierarchicalPlanner:
     """Subgoal decomposition, then one fold line per subgoal, both by prompts and with a repair loop."""
 
-    class Config(SubgoalsConfig):
+    class Config(DecompositionConfig):
         """Prompt versions and limits."""
 
-        fold_line_prompt: str = Field("v1", description="version of the prompt that finds fold lines")
+        fold_line_prompt: str = Field(default="v1", description="version of the prompt that finds fold lines")
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
 
     @classmethod
     def prompts_read(cls, config: Config) -> list[str]:
-        """The prompts that it may use, each as ``role@version``; what a scene shows decides between those of a fold."""
-        return [f"subgoals@{config.subgoals_prompt}", *prompts_about("fold_line", config.fold_line_prompt)]
+        """The prompts that it may use with these parameters, each as ``role@version``."""
+        return [f"subgoals@{config.subgoals_prompt}", *prompts_for_scenes("fold_line", config.fold_line_prompt)]
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""
-        return split(instruction, template, conversation, self._config)
+        return decompose(instruction, template, conversation, self._config)
 
     def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine:
         """Find the fold line of a subgoal on the scene as seen now. Raises PlanError if no valid answer came."""
@@ -52,8 +50,8 @@ class HierarchicalPlanner:
             check_fold_line(line, scene)
             return line
 
-        prompt = prompt_about(scene, "fold_line", self._config.fold_line_prompt)
-        values = shown_values(scene, prompt, subgoal=subgoal.text)
+        prompt = prompt_for(scene, "fold_line", self._config.fold_line_prompt)
+        values = prompt_inputs(scene, prompt, subgoal=subgoal.text)
         attempts = self._config.max_attempts or prompt.max_attempts
         return ask_until_valid(prompt, values, read, conversation, self._config.params, attempts)
 

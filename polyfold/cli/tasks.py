@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-__all__ = ["configure", "run"]
+from polyfold import plugins
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +23,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _list_suites() -> None:
-    from polyfold import plugins
     from polyfold.evaluation import suite
 
     for name in plugins.names("tasks"):
@@ -33,7 +32,7 @@ def _list_suites() -> None:
 
 def _list_tasks(name: str, kind: str | None) -> None:
     from polyfold.evaluation import suite
-    from polyfold.tasks import describe
+    from polyfold.tasks._words import describe
 
     found = suite(name)
     for task in found.tasks:
