@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.garments import Garment
 from polyfold.plugins import create
+from polyfold.plugins.interfaces import RecordsMotion
 from polyfold.types import Action, Observation, SimState
 
 
@@ -82,7 +83,7 @@ class FaultySimulator:
 
     def record(self, recorder: Any, frames_per_second: float = 15.0) -> None:
         """Pass on pictures of the motion, if the inner simulator can."""
-        if hasattr(self._inner, "record"):
+        if isinstance(self._inner, RecordsMotion):
             self._inner.record(recorder, frames_per_second)
 
     def state(self) -> SimState:

@@ -21,6 +21,7 @@ observe = HOST.observe
 portable = HOST.portable
 refresh = HOST.refresh
 register = HOST.register
+third_party = HOST.third_party
 unobserve = HOST.unobserve
 unregister = HOST.unregister
 
@@ -45,6 +46,7 @@ __all__ = [
     "prompts_read",
     "refresh",
     "register",
+    "third_party",
     "unobserve",
     "unregister",
 ]

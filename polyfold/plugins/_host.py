@@ -61,6 +61,10 @@ class Host:
         self._found = None
         return self.catalog()
 
+    def third_party(self) -> bool:
+        """Whether plugins of other distributions than PolyFold's own count."""
+        return self._third_party
+
     def _discovered(self) -> tuple[Catalog, pluggy.PluginManager]:
         if self._found is None:
             found, manager = Catalog(), new_manager(blocked=disabled_by_environment())

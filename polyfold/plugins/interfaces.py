@@ -41,6 +41,7 @@ __all__ = [
     "ReadsFiles",
     "ReadsPrompts",
     "RecordsMotion",
+    "RoundedMetric",
     "Segmenter",
     "SewnKind",
     "Simulator",
@@ -313,14 +314,15 @@ class Metric(Protocol):
 
 @runtime_checkable
 class LabelledMetric(Protocol):
-    """A metric that says how it is shown; others are headed by their registered name, with one digit.
-
-    Attributes:
-        label: heading of its column, without the unit.
-        digits: after the point.
-    """
+    """A metric that heads its column, without the unit; others are headed by their registered name."""
 
     label: ClassVar[str]
+
+
+@runtime_checkable
+class RoundedMetric(Protocol):
+    """A metric that says with how many digits after the point it is shown; others are shown with one."""
+
     digits: ClassVar[int]
 
 

@@ -23,7 +23,7 @@ def in_processes(
     """Run independent jobs in processes of this machine and yield (job, result) as they finish.
 
     The first job runs here and fills the compiler's cache, from which the workers start. Workers keep to one thread
-    each, know the components that were registered by hand, leave Ctrl-C to this process, and end with it however it
+    each, know the plugins and components that this process knows, leave Ctrl-C to this process, and end with it however it
     ends. A caller that keeps each result before it asks for the next loses at most the jobs in flight when killed.
 
     Args:
@@ -45,7 +45,7 @@ def _in_pool(
     from multiprocessing import get_context
 
     with _one_thread_each():
-        pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare_worker, (plugins.portable(),))
+        pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare_worker, (plugins.portable(), plugins.third_party()))
         running: dict[Future[_Result], _Job] = {}
         try:
             running |= {pool.submit(work, job): job for job in islice(waiting, 2 * workers)}
@@ -84,6 +84,7 @@ def on_dask(
         cluster = None if address else LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
         with Client(address or cluster) as client:
             try:
+                client.run(plugins.refresh, plugins.third_party())
                 for kind, name, target in plugins.portable():
                     client.run(plugins.register, kind, name, target)
                 running = {client.submit(work, job, pure=False): job for job in jobs}
@@ -101,8 +102,8 @@ def _one_thread_each() -> AbstractContextManager[Any]:
     return patch.dict(os.environ, dict.fromkeys(_THREADS, "1"))
 
 
-def _prepare_worker(registrations: Sequence[tuple[str, str, str]]) -> None:
-    """Leave Ctrl-C to the parent, end with it, and know what was registered by hand."""
+def _prepare_worker(registrations: Sequence[tuple[str, str, str]], third_party: bool) -> None:
+    """Leave Ctrl-C to the parent, end with it, and know the plugins and components that it knows."""
     import multiprocessing
     import signal
     import threading
@@ -116,5 +117,6 @@ def _prepare_worker(registrations: Sequence[tuple[str, str, str]]) -> None:
         os._exit(1)
 
     threading.Thread(target=end_with_parent, daemon=True).start()
+    plugins.refresh(third_party)
     for kind, name, target in registrations:
         plugins.register(kind, name, target)

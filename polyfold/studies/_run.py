@@ -25,7 +25,7 @@ from polyfold.logs import (
     picture_path,
     write_atomically,
 )
-from polyfold.plugins.interfaces import LabelledMetric, Metric
+from polyfold.plugins.interfaces import LabelledMetric, Metric, RoundedMetric
 from polyfold.studies._cell import PICTURES, Render, Scored, evaluate_with_picture
 from polyfold.studies._cells import Cell, cells
 from polyfold.studies._executors import in_processes, on_dask
@@ -119,11 +119,10 @@ def metric_records(study: Study) -> dict[str, MetricRecord]:
 
 def _metric_record(name: str) -> MetricRecord:
     metric: Metric = plugins.component_class("metrics", name)
-    labelled = isinstance(metric, LabelledMetric)
     return MetricRecord(
-        label=metric.label if labelled else name,
+        label=metric.label if isinstance(metric, LabelledMetric) else name,
         unit=metric.unit,
-        digits=metric.digits if labelled else 1,
+        digits=metric.digits if isinstance(metric, RoundedMetric) else 1,
         higher_is_better=metric.higher_is_better,
         summary=plugins.find("metrics", name).summary,
     )

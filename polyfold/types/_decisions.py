@@ -78,7 +78,7 @@ class Decision:
         seconds: time spent per stage (``grounding``, ``language``, ``policy``) [s].
         retry: whether this repeats a fold that was seen to have failed.
         action_map: computes what the policy thinks of every place to pick, for pictures; None where it can't say, or
-            did not choose the picks (:func:`polyfold.interfaces.action_map_later`).
+            did not choose the picks (:func:`polyfold.plugins.interfaces.action_map_later`).
     """
 
     action: Action

@@ -10,6 +10,7 @@ import pytest
 
 from polyfold import plugins
 from polyfold.errors import PluginError
+from polyfold.studies import in_processes
 
 
 class Component:
@@ -230,3 +231,19 @@ def test_a_hook_of_a_later_version_may_be_marked_optional(installed):
         "from polyfold import hookimpl\n\n@hookimpl(optionalhook=True)\ndef on_wrinkle(wrinkle):\n    pass\n",
     )
     assert problems(plugins.Host(), "early") == []
+
+
+def test_workers_know_the_plugins_that_their_parent_knows(installed):
+    installed(
+        "elsewhere",
+        "from polyfold import hookimpl\n\n@hookimpl\ndef register_policies(register):\n"
+        "    register('elsewhere', 'a:B')\n",
+    )
+    try:
+        for third_party in (True, False):
+            plugins.refresh(third_party)
+            found = [names for _, names in in_processes(plugins.names, ["policies"] * 2, workers=2)]
+            assert found[0] == found[1]
+            assert ("elsewhere" in found[1]) == third_party
+    finally:
+        plugins.refresh(third_party=True)

@@ -1,6 +1,6 @@
 """Registers the example's policy. Nothing heavy is imported here: the target is a string."""
 
-from polyfold.plugins.hookspecs import hookimpl
+from polyfold import hookimpl
 
 
 @hookimpl
