@@ -23,8 +23,8 @@ def in_processes(
     """Run independent jobs in processes of this machine and yield (job, result) as they finish.
 
     The first job runs here and fills the compiler's cache, from which the workers start. Workers keep to one thread
-    each, know the plugins and components that this process knows, leave Ctrl-C to this process, and end with it however it
-    ends. A caller that keeps each result before it asks for the next loses at most the jobs in flight when killed.
+    each, know the plugins and components that this process knows, leave Ctrl-C to this process, and end with it however
+    it ends. A caller that keeps each result before it asks for the next loses at most the jobs in flight when killed.
 
     Args:
         work: what to do; must be importable by the workers.
@@ -45,7 +45,8 @@ def _in_pool(
     from multiprocessing import get_context
 
     with _one_thread_each():
-        pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare_worker, (plugins.portable(), plugins.third_party()))
+        known = plugins.portable(), plugins.third_party()
+        pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare_worker, known)
         running: dict[Future[_Result], _Job] = {}
         try:
             running |= {pool.submit(work, job): job for job in islice(waiting, 2 * workers)}
