@@ -21,6 +21,7 @@ from polyfold.errors import ConfigError, LLMAccessError, LLMError
 from polyfold.types import Reply
 from polyfold_llms.batch import FORMS, PendingRequest, export_line, read_answers, read_pending, with_cost
 from polyfold_llms.cassette import Cassette, open_cassette
+from polyfold_llms.request_keys import model_of
 
 
 class CassetteCommand:
@@ -156,7 +157,7 @@ def _asked(requests: Mapping[str, PendingRequest], arguments: argparse.Namespace
     from polyfold.plugins import create
 
     llm = create("llms", arguments.llm, dict(_setting(text) for text in arguments.set))
-    asked = str(getattr(llm, "model", arguments.llm))
+    asked = model_of(llm, arguments.llm)
     others = {m.request["model"] for m in requests.values()} - {asked}
     if others:
         raise ConfigError(f"the requests are for {', '.join(sorted(others))}, not for {asked}; fill them with that")

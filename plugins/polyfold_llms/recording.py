@@ -19,7 +19,7 @@ from polyfold.plugins import create
 from polyfold.rollout import request_place
 from polyfold.types import Message, Reply
 from polyfold_llms.cassette import append_line, open_cassette, recorded_models, refuse_secrets
-from polyfold_llms.request_keys import normalized_request, request_key
+from polyfold_llms.request_keys import model_of, normalized_request, request_key
 
 
 class RecordLLM:
@@ -41,7 +41,7 @@ class RecordLLM:
         self._cassette = open_cassette(config.path.resolve())
         self._inner = create("llms", config.inner, config.inner_params)
         self._sample = config.sample
-        self.model = str(getattr(self._inner, "model", config.inner))
+        self.model = model_of(self._inner, config.inner)
 
     def complete(self, messages: Sequence[Message], params: Mapping[str, Any]) -> Reply:
         """Answer from the cassette or the backend. Raises LLMError as that does, or if a secret would be kept."""

@@ -8,8 +8,9 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import zip_longest
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
+from polyfold.plugins.interfaces import LLM
 from polyfold.rollout import without_pictures
 from polyfold.types import Message
 
@@ -22,6 +23,21 @@ _AROUND = 40
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 Request = dict[str, Any]
+
+
+@runtime_checkable
+class NamesModel(Protocol):
+    """A backend that can say which model it asks, for logs and cassettes."""
+
+    @property
+    def model(self) -> str:
+        """The model's name."""
+        ...
+
+
+def model_of(llm: LLM, backend: str) -> str:
+    """The model that a backend asks; the backend's own name if it does not say."""
+    return llm.model if isinstance(llm, NamesModel) else backend
 
 
 def normalized_request(model: str, messages: Sequence[Message], params: Mapping[str, Any], sample: int) -> Request:

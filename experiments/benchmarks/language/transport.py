@@ -28,7 +28,7 @@ from polyfold import plugins
 from polyfold.api import run
 from polyfold.prompts import load_prompt
 from polyfold.studies import Study
-from polyfold.types import EpisodeStart, Step
+from polyfold.types import EpisodeStart, Role, Step
 
 ROUTES = ("openai/gpt-4o", "openrouter/openai/gpt-4o")
 
@@ -73,17 +73,21 @@ def overhead(route: str, calls: int, latency_s: float, limit: int) -> dict[str, 
 
 
 class Decisions:
-    """Writes down every decision of every episode, exactly."""
+    """Writes down every decision of every episode of the method, exactly."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
 
-    def on_episode_start(self, start: EpisodeStart) -> None:
+    def on_episode_start(self, start: EpisodeStart, role: Role) -> None:
         """The subgoals."""
+        if role != "method":
+            return
         self.lines.append(json.dumps([start.garment.name, start.instruction, [goal.text for goal in start.subgoals]]))
 
-    def on_step(self, step: Step) -> None:
+    def on_step(self, step: Step, role: Role) -> None:
         """Line, picks and places to the last bit."""
+        if role != "method":
+            return
         line = step.fold_line
         numbers = [step.action.picks.tolist(), step.action.places.tolist(), line and [line.start, line.end]]
         self.lines.append(json.dumps([step.index, numbers]))
