@@ -179,7 +179,7 @@ def _framed_photo(photo: NDArray[np.uint8], scale: float, shift: Floats, camera:
     matrix = np.array([[scale, 0.0, shift[0]], [0.0, scale, shift[1]]])
     flags = cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR
     size = (camera.width, camera.height)
-    return cv2.warpAffine(photo, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(cv2.warpAffine(photo, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE), np.uint8)
 
 
 def _drawn(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:

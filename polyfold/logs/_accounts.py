@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 from pydantic import BaseModel, ConfigDict
-
-Number = TypeVar("Number", int, float)
 
 
 class _Reply(Protocol):
@@ -100,8 +98,8 @@ def _account(calls: Sequence[_Call]) -> Account:
         repairs=sum(call.attempt > 1 for call in calls),
         errors=len(calls) - len(replies),
         tries=sum(reply.attempts for reply in replies),
-        prompt_tokens=_sum_of_known(reply.usage.get("prompt_tokens") for reply in replies),
-        completion_tokens=_sum_of_known(reply.usage.get("completion_tokens") for reply in replies),
+        prompt_tokens=_tokens(replies, "prompt_tokens"),
+        completion_tokens=_tokens(replies, "completion_tokens"),
         latency_s=sum(reply.latency_s for reply in replies),
         wall_s=sum(reply.wall_s for reply in replies),
         cost=_sum_of_known(reply.cost for reply in replies),
@@ -118,7 +116,12 @@ def _questions(calls: Sequence[_Call]) -> list[list[_Call]]:
     return [question for question in asked.values() if all(call.reply is not None for call in question)]
 
 
-def _sum_of_known(values: Iterable[Number | None]) -> Number | None:
+def _tokens(replies: Sequence[_Reply], name: str) -> int | None:
+    total = _sum_of_known(reply.usage.get(name) for reply in replies)
+    return None if total is None else int(total)
+
+
+def _sum_of_known(values: Iterable[float | None]) -> float | None:
     """The sum; None if one of the values is unknown."""
     everything = list(values)
     known = [value for value in everything if value is not None]

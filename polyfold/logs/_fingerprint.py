@@ -121,7 +121,8 @@ def fingerprint(
         if source.folder is not None:
             folders[source.name] = source.folder
         for name in plugins.prompts_of(kind, spec):
-            prompt = load_prompt(*name.split("@"))
+            role, _, prompt_version = name.partition("@")
+            prompt = load_prompt(role, prompt_version)
             prompts[prompt.name] = prompt.sha256
         for path in plugins.files_of(kind, spec):
             files[path.name] = _digest_of_file(path)

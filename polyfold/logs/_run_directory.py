@@ -1,7 +1,7 @@
 """Run directories: append-only, one finished episode a line, safe to kill at any moment and to resume.
 
-``run.json`` says what the run is (:class:`RunRecord`); ``episodes.jsonl`` holds one finished episode a line, appended and
-flushed to disk. A last line that a kill cut in half is dropped when the directory is opened again.
+``run.json`` says what the run is (:class:`RunRecord`); ``episodes.jsonl`` holds one finished episode a line, appended
+and flushed to disk. A last line that a kill cut in half is dropped when the directory is opened again.
 """
 
 from __future__ import annotations
@@ -64,12 +64,12 @@ class RunDirectory(Generic[Record]):
         self.path.mkdir(parents=True, exist_ok=True)
         self._record_type = record_type
         self._lines = JsonLines(self.path / EPISODES)
-        asked = json.loads(json.dumps(asked))
+        plain: dict[str, Any] = json.loads(json.dumps(asked))
         if (self.path / DESCRIPTION).exists():
-            self.run = self._claimed(asked)
+            self.run = self._claimed(plain)
         else:
             self.run = RunRecord(
-                asked=asked,
+                asked=plain,
                 started=datetime.now(UTC),
                 fingerprint=fingerprint,
                 host=this_host(),

@@ -1,7 +1,7 @@
 """Runs of schema version 1 as records of today: they can be read, tabulated and drawn, and no longer be resumed.
 
-Version 1 kept the success criterion ``lenient`` under the name ``polyfold``, no fingerprint, no time stamps, and of steps
-and calls no more than counts.
+Version 1 kept the success criterion ``lenient`` under the name ``polyfold``, no fingerprint, no time stamps, and of
+steps and calls no more than counts.
 """
 
 from __future__ import annotations

@@ -57,7 +57,7 @@ def _row(panels: list[NDArray[np.uint8]], size: int) -> NDArray[np.uint8]:
     for index, panel in enumerate(panels):
         # Drawn at the camera's size and then made smaller: strokes stay fine, and what covers what stays the same.
         small = Image.fromarray(panel).resize((size, size), Image.Resampling.LANCZOS)
-        row[:, index * (size + GAP) : index * (size + GAP) + size] = small
+        row[:, index * (size + GAP) : index * (size + GAP) + size] = np.asarray(small)
     return row
 
 

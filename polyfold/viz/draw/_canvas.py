@@ -64,7 +64,7 @@ class Canvas:
         """A filled disc."""
         from PIL import ImageDraw
 
-        x, y = self._to_image([centre])[0]
+        x, y = self._to_image(centre)[0]
         r = radius * self.OVERSAMPLE
         ImageDraw.Draw(self._image).ellipse((x - r, y - r, x + r, y + r), fill=colour)
 
@@ -72,22 +72,29 @@ class Canvas:
         return (np.asarray(points, float).reshape(-1, 2) + 0.5) * self._scale - 0.5
 
     def _paint(self, shapes: Sequence[NDArray], colour: Colour, opacity: float, width: float | None) -> None:
-        from PIL import Image as Pillow
         from PIL import ImageDraw
 
         if opacity >= 1.0:
-            draw, fill, corner = ImageDraw.Draw(self._image), colour, np.zeros(2)
+            draw = ImageDraw.Draw(self._image)
+            for shape in shapes:
+                _draw_shape(draw, shape, colour, width)
         else:
-            margin = (width or 0) + 1
-            everything = np.vstack(shapes)
-            corner = np.floor(everything.min(0) - margin)
-            extent = np.ceil(everything.max(0) + margin) - corner
-            cover = Pillow.new("L", tuple(int(side) for side in extent), 0)
-            draw, fill = ImageDraw.Draw(cover), round(255 * opacity)
+            self._cover(shapes, colour, opacity, width)
+
+    def _cover(self, shapes: Sequence[NDArray], colour: Colour, opacity: float, width: float | None) -> None:
+        """Shapes through which the picture shows; where they overlap it shows no less."""
+        from PIL import Image as Pillow
+        from PIL import ImageDraw
+
+        margin = (width or 0) + 1
+        everything = np.vstack(shapes)
+        left, top = (int(side) for side in np.floor(everything.min(0) - margin))
+        right, bottom = (int(side) for side in np.ceil(everything.max(0) + margin))
+        cover = Pillow.new("L", (right - left, bottom - top), 0)
+        draw = ImageDraw.Draw(cover)
         for shape in shapes:
-            _draw_shape(draw, shape - corner, fill, width)
-        if opacity < 1.0:
-            self._image.paste(colour, tuple(int(side) for side in corner), cover)
+            _draw_shape(draw, shape - np.array([left, top]), round(255 * opacity), width)
+        self._image.paste(colour, (left, top), cover)
 
 
 def _draw_shape(draw, shape: NDArray, fill, width: float | None) -> None:

@@ -81,7 +81,7 @@ def draw_action_map(canvas: Canvas, action_map: ActionMap) -> None:
     for point in points:
         canvas.disc(point, 4.2, PAPER)
     for index in np.argsort(values):
-        canvas.disc(points[index], 3.2, _map_colour(values[index], values.min(), values.max()))
+        canvas.disc(points[index], 3.2, _map_colour(float(values[index]), float(values.min()), float(values.max())))
 
 
 def _map_colour(value: float, low: float, high: float) -> Colour:

@@ -150,7 +150,7 @@ def _cross(upper: _Label, upper_row: float, lower: _Label, lower_row: float, tex
 
 def _rows(labels: Sequence[_Label], height: int) -> Floats:
     """Heights [px] for labels, as near their points as they fit below each other."""
-    wanted = np.array([label.point[1] for label in labels])
+    wanted = np.array([label.point[1] for label in labels], float)
     space = line_height(LABEL) + 5
     rows = np.maximum.accumulate(wanted - np.arange(len(wanted)) * space) + np.arange(len(wanted)) * space
     last = height - space / 2

@@ -48,7 +48,7 @@ def _header(name: str, label: bool) -> Markup:
     return Markup('<th scope="col"{}>{}{}</th>').format(Markup(' class="label"') if label else "", text, unit_html)
 
 
-def _label(cell: str, index: int, fresh: bool) -> Markup:
+def _label(cell: Cell, index: int, fresh: bool) -> Markup:
     dimmed = index == 0 and not fresh
     return Markup('<td class="label{}" title="{}">{}</td>').format(" again" if dimmed else "", cell, cell)
 
