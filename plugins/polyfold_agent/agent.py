@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import PlanError
 from polyfold.geometry import FoldLine, contour_of
-from polyfold.plugins.interfaces import Goal, Grounding, Planner, Policy, Segmenter, action_map_later
+from polyfold.plugins.interfaces import Goal, Grounding, Planner, Policy, Segmenter, StepwisePlanner, action_map_later
 from polyfold.types import Action, ActionMap, Decision, Observation, Scene, Subgoal
 from polyfold_agent.recovery import Attempt, inspect
 
@@ -100,7 +100,7 @@ class PolyFoldAgent:
         subgoal = self._pending[0]
         plan = self._planner.plan(subgoal, scene, self._goal.conversation)
         planned = time.perf_counter()
-        if plan is None or getattr(self._planner, "decomposes", True):
+        if plan is None or not _plans_step_by_step(self._planner):
             self._pending.pop(0)
         if plan is None:
             return None
@@ -146,6 +146,11 @@ class PolyFoldAgent:
             return self._policy.act(plan, scene, self._rng), plan, action_map_later(self._policy, plan, scene)
         # A direct planner gives picks and places; the line that explains them is what the next grounding needs.
         return plan, FoldLine.moving(plan.picks.mean(axis=0), plan.places.mean(axis=0)), None
+
+
+def _plans_step_by_step(planner: Planner) -> bool:
+    """Whether the instruction is planned again on every scene, instead of one subgoal after the other."""
+    return isinstance(planner, StepwisePlanner) and not planner.decomposes
 
 
 def _since(clock: float) -> float:

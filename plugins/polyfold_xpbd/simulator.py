@@ -18,11 +18,9 @@ from polyfold.types import Action, Observation, SimState
 if TYPE_CHECKING:
     from polyfold_xpbd.solver import Solver
 
-__all__ = ["XpbdSimulator"]
-
 
 class XpbdSimulator:
-    """Cloth on a table under a camera. Implements :class:`polyfold.interfaces.Simulator`.
+    """Cloth on a table under a camera. Implements :class:`polyfold.plugins.interfaces.Simulator`.
 
     The garment is laid with its bounding circle in the middle of the image, turned by an angle drawn from the seed.
     Grippers hold all layers within 15 mm of a pick and lay them down at the place along half an ellipse. A pick off
@@ -34,18 +32,26 @@ class XpbdSimulator:
 
         model_config = ConfigDict(extra="forbid", frozen=True)
 
-        rotation_deg: float = Field(20.0, ge=0.0, le=180.0, description="the pose is turned by up to this angle [deg]")
-        fill: float = Field(0.8, gt=0.1, le=1.0, description="share of the image that the garment's circle fills")
-        thickness: float = Field(0.0035, gt=0.001, le=0.02, description="distance of touching layers [m]")
-        bending_length: float = Field(0.010, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]")
-        table_friction: float = Field(0.8, ge=0.0, le=2.0, description="Coulomb friction, cloth on table")
-        cloth_friction: float = Field(0.6, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
+        rotation_deg: float = Field(
+            default=20.0, ge=0.0, le=180.0, description="the pose is turned by up to this angle [deg]"
+        )
+        fill: float = Field(
+            default=0.8, gt=0.1, le=1.0, description="share of the image that the garment's circle fills"
+        )
+        thickness: float = Field(default=0.0035, gt=0.001, le=0.02, description="distance of touching layers [m]")
+        bending_length: float = Field(
+            default=0.010, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]"
+        )
+        table_friction: float = Field(default=0.8, ge=0.0, le=2.0, description="Coulomb friction, cloth on table")
+        cloth_friction: float = Field(default=0.6, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
         order: int = Field(
-            1, ge=0, description="seed of the order in which particles and contacts are visited; 0 is the mesh's own"
+            default=1,
+            ge=0,
+            description="seed of the order in which particles and contacts are visited; 0 is the mesh's own",
         )
 
     @classmethod
-    def faultless(cls, config: Config) -> tuple[str, dict[str, Any]]:
+    def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:
         """The simulator that references are made in: the same cloth, visited in the usual order."""
         return "xpbd", config.model_dump(exclude_unset=True, exclude={"order"})
 

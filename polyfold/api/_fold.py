@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from polyfold.errors import ConfigError
 from polyfold.evaluation import find_task, judge
 from polyfold.garments import Garment
 from polyfold.logs import fold_record, transcript_lines, write_atomically
+from polyfold.plugins.interfaces import RecordsMotion, Simulator
 from polyfold.rollout import run_episode
 from polyfold.types import Episode, Observation
 
@@ -86,15 +88,18 @@ def attempt(
         frames: if given, pictures of the motion are appended (for simulators that can ``record``).
     """
     goal = None if task is None else find_task(task, garment.kind)
-    simulator = plugins.create_chosen(experiment, "simulator")
-    try:
-        if frames is not None and hasattr(simulator, "record"):
-            simulator.record(frames.append, GIF_RATE)
-        episode = judge(run_episode(experiment, garment, instruction, seed, simulator, task=goal), task)
-    finally:
-        simulator.close()
-    plugins.notify("on_episode_end", episode=episode)
-    return episode
+    with closing(plugins.create_chosen(experiment, "simulator")) as simulator:
+        if frames is not None:
+            _record_motion(simulator, frames)
+        return run_episode(
+            experiment, garment, instruction, seed, simulator, task=goal, judge=lambda episode: judge(episode, task)
+        )
+
+
+def _record_motion(simulator: Simulator, frames: list[Observation]) -> None:
+    """Have pictures of the motion appended, if the simulator can take them."""
+    if isinstance(simulator, RecordsMotion):
+        simulator.record(frames.append, GIF_RATE)
 
 
 def save(episode: Episode, folder: Path, frames: Sequence[Observation] = (), started: datetime | None = None) -> None:

@@ -18,6 +18,7 @@ from polyfold.garments._obj import load_obj
 from polyfold.garments._outline_files import load_mask, load_outline, load_picture, outline_from_photo
 from polyfold.garments._twin import twin_from_outline
 from polyfold.geometry import Camera, contour_of, fill_polygon
+from polyfold.plugins.interfaces import SewnKind
 from polyfold.types import Observation, Scene
 
 SPAN = 300.0
@@ -100,10 +101,10 @@ def garment(
 
 def pattern_of(kind: str) -> Pattern:
     """How a kind of garment is sewn. Raises GarmentError if its class does not say."""
-    pattern = getattr(plugins.component_class("garments", kind), "pattern", None)
-    if pattern is None:
+    cls = plugins.component_class("garments", kind)
+    if not isinstance(cls, SewnKind):
         raise GarmentError(f"the garment kind {kind!r} does not say how it is sewn; give its class a `pattern`")
-    return pattern
+    return cls.pattern
 
 
 def _from_mesh(

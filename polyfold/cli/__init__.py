@@ -1,4 +1,7 @@
-"""The command line: ``polyfold VERB``. One module per verb; plugins may add verbs."""
+"""The command line: ``polyfold VERB``. One module per verb; plugins may add verbs.
+
+A verb's module imports at its top what its options need, and the rest when it runs, so that help comes at once.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,11 @@ import sys
 import warnings
 from collections.abc import Sequence
 from importlib import import_module
+from typing import Any, Protocol, TextIO
 
 import polyfold
+from polyfold import plugins
+from polyfold.errors import PolyfoldError, RefusedError
 
 __all__ = ["main"]
 
@@ -24,7 +30,18 @@ VERBS = {
     "plugins": ("polyfold.cli.plugins", "list the installed plugins and their components"),
 }
 
-REFUSED, FAILED, USAGE, INTERRUPTED = 3, 1, 2, 130
+FAILED, REFUSED, INTERRUPTED = 1, 3, 130
+
+
+class Verb(Protocol):
+    """What a verb's module or class provides."""
+
+    def configure(self, parser: argparse.ArgumentParser) -> None:
+        """Add the options."""
+
+    def run(self, arguments: argparse.Namespace) -> int:
+        """Do it; returns the exit status."""
+        ...
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -33,9 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     warnings.showwarning = _show_warning
     if "--no-plugins" in arguments:
         arguments.remove("--no-plugins")
-        polyfold.plugins.refresh(third_party=False)
-    from polyfold.errors import PolyfoldError, RefusedError
-
+        plugins.refresh(third_party=False)
     try:
         parsed = _parser(arguments).parse_args(arguments)
         return parsed.run(parsed)
@@ -71,15 +86,22 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _plugin_verbs() -> dict[str, tuple[str, str]]:
-    found = polyfold.plugins.catalog().components["commands"]
+    found = plugins.catalog().components["commands"]
     return {name: (str(entries[0].target), entries[0].summary) for name, entries in sorted(found.items())}
 
 
-def _implementation(target: str):
+def _implementation(target: str) -> Verb:
     module, _, attribute = target.partition(":")
-    found = import_module(module)
+    found: Any = import_module(module)
     return getattr(found, attribute) if attribute else found
 
 
-def _show_warning(message, category, filename, lineno, file=None, line=None) -> None:
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
     print(f"polyfold: warning: {message}", file=sys.stderr)

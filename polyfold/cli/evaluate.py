@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from polyfold.studies import PICTURES
-
-__all__ = ["configure", "run"]
+import polyfold
+from polyfold.studies import PICTURES, Study, with_variants
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -28,22 +27,19 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="go on with a run although code, prompts or weights have changed since; the run records it",
     )
-    parser.add_argument("--garments", type=int, metavar="N", help="garments per kind instead of the study's")
+    parser.add_argument("--garments", type=_at_least_one, metavar="N", help="garments per kind instead of the study's")
     parser.add_argument("--variants", nargs="+", metavar="NAME", help="only these of the study's variants")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Run what is missing and print the table."""
-    from polyfold import api, studies
-    from polyfold.analysis import table
-
-    study = studies.load(arguments.config)
+    study = polyfold.load(arguments.config)
     if arguments.garments is not None:
-        study = studies.Study(**{**study.model_dump(), "garments": arguments.garments})
+        study = Study(**{**study.model_dump(), "garments": arguments.garments})
     if arguments.variants is not None:
-        study = studies.with_variants(study, arguments.variants)
+        study = with_variants(study, arguments.variants)
     try:
-        results = api.run(
+        results = polyfold.run(
             study,
             arguments.out,
             arguments.workers,
@@ -55,5 +51,11 @@ def run(arguments: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         print(f"interrupted; what is finished is in {arguments.out}, run the same command to go on")
         raise
-    print(table(results))
+    print(polyfold.table(results))
     return 0
+
+
+def _at_least_one(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1; give how many")
+    return int(text)

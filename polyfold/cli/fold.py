@@ -6,11 +6,14 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from polyfold.cli.components import add_component_options, experiment_from
-from polyfold.cli.source import add_source_options, garment_from
+import polyfold
+from polyfold.cli._components import add_component_options, experiment_from
+from polyfold.cli._garment_source import add_source_options, garment_from
 
-__all__ = ["configure", "run"]
+if TYPE_CHECKING:
+    from polyfold.types import EpisodeStart, Step
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -25,11 +28,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Fold, show what happens as it happens, and save the result."""
-    from polyfold.api import fold
-
     experiment = experiment_from(arguments)
     garment = garment_from(arguments, experiment)
-    episode = fold(
+    episode = polyfold.fold(
         arguments.instruction,
         garment,
         seed=arguments.seed,
@@ -48,13 +49,15 @@ def run(arguments: argparse.Namespace) -> int:
 class Printer:
     """Prints an episode as it happens."""
 
-    def on_episode_start(self, start) -> None:
+    def on_episode_start(self, start: EpisodeStart) -> None:
+        """Print the sentence and what it was split into."""
         print(f"{start.garment.name}: {start.instruction}")
         for number, subgoal in enumerate(start.subgoals, 1):
             print(f"  {number}. {subgoal.text}")
         self._flush(f"  planned in {start.seconds:.2f} s")
 
-    def on_step(self, step) -> None:
+    def on_step(self, step: Step) -> None:
+        """Print where was folded, and how long each stage took."""
         line = step.fold_line
         where = (
             f"line ({line.start[0]:.0f}, {line.start[1]:.0f}) -> ({line.end[0]:.0f}, {line.end[1]:.0f})" if line else ""
@@ -68,7 +71,7 @@ class Printer:
         sys.stdout.flush()
 
 
-def _print_result(episode, out: Path | None) -> None:
+def _print_result(episode: polyfold.Episode, out: Path | None) -> None:
     fidelity = episode.fidelity
     if fidelity is not None:
         print(

@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-__all__ = ["configure", "run"]
+import polyfold
+from polyfold import plugins
+from polyfold.cli._components import add_component_options, experiment_from
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -14,19 +16,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--count", type=int, default=6, metavar="N", help="garments of each kind (default: 6)")
     parser.add_argument("--seed", type=int, default=0, help="first seed (default: 0)")
     parser.add_argument("--out", type=Path, default=Path("garments.png"), metavar="PNG", help="default: garments.png")
+    add_component_options(parser, ["simulator"])
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw the sheet."""
-    from polyfold import plugins, viz
+    from polyfold import viz
 
-    kinds = arguments.garment or plugins.names("garments")
-    simulator = plugins.create("simulators", "xpbd")
+    simulator = plugins.create_chosen(experiment_from(arguments), "simulator")
     pictures = {}
-    for kind in kinds:
-        generator = plugins.create("garments", kind)
+    for kind in arguments.garment or plugins.names("garments"):
         for seed in range(arguments.seed, arguments.seed + arguments.count):
-            garment = generator.generate(seed)
+            garment = polyfold.garment(kind, seed)
             pictures[garment.name] = simulator.reset(garment, seed).rgb
     simulator.close()
     arguments.out.parent.mkdir(parents=True, exist_ok=True)

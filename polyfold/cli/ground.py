@@ -6,9 +6,8 @@ import argparse
 import json
 from pathlib import Path
 
-from polyfold.cli.components import add_component_options, experiment_from
-
-__all__ = ["configure", "run"]
+import polyfold
+from polyfold.cli._components import add_component_options, experiment_from
 
 OUTLINES = {".json", ".jsonl"}
 
@@ -21,15 +20,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--garment", required=True, metavar="KIND", help="kind of garment, for example tshirt")
     parser.add_argument("--out", type=Path, metavar="PNG", help="picture (default: SOURCE with -polygon.png)")
     parser.add_argument("--json", action="store_true", help="print the keypoints in the source's pixels as JSON")
-    add_component_options(parser)
+    add_component_options(parser, ["grounding"])
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Fit, draw and report."""
     from polyfold import viz
-    from polyfold.api import ground
 
-    found = ground(arguments.garment, **_source(arguments.source), experiment=experiment_from(arguments))
+    found = polyfold.ground(arguments.garment, **_source(arguments.source), experiment=experiment_from(arguments))
     out = arguments.out or Path(f"{arguments.source.stem}-polygon.png")
     out.parent.mkdir(parents=True, exist_ok=True)
     assert found.scene.model is not None

@@ -9,8 +9,6 @@ from typing import Any
 from polyfold import plugins
 from polyfold.plugins.hookspecs import KINDS
 
-__all__ = ["configure", "run"]
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the options."""

@@ -6,12 +6,15 @@ import argparse
 import json
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from polyfold.cli.components import add_component_options, experiment_from
-from polyfold.cli.source import add_source_options, garment_from
+from polyfold import plugins
+from polyfold.cli._components import add_component_options, experiment_from
+from polyfold.cli._garment_source import add_source_options, garment_from
+from polyfold.errors import ConfigError
 
-__all__ = ["configure", "run"]
+if TYPE_CHECKING:
+    from polyfold.types import Call, Episode, Message
 
 CHARACTERS_PER_TOKEN = 3.4
 """The prompts in ``prompts/`` have 3.2 (fold_line) to 3.7 (subgoals) by the tokenizer of gpt-4o, on t-shirts."""
@@ -38,58 +41,54 @@ def run(arguments: argparse.Namespace) -> int:
 
         print("\n".join(prompt_names()))
         return 0
-    entry = _asked(arguments)
-    tokens, how = _tokens(entry.messages, arguments.model)
+    call = _asked(arguments)
+    tokens, how = _tokens(call.messages, arguments.model)
     if arguments.json:
-        shown = {name: getattr(entry, name) for name in ("role", "step", "params", "messages")}
+        shown = {name: getattr(call, name) for name in ("role", "step", "params", "messages")}
         print(json.dumps({**shown, "tokens": tokens, "counted": how}, ensure_ascii=False))
         return 0
-    for message in entry.messages:
+    for message in call.messages:
         print(f"--- {message['role']}\n{_text(message)}\n")
-    print(f"--- {tokens} tokens ({how}), parameters {json.dumps(entry['params'])}")
+    print(f"--- {tokens} tokens ({how}), parameters {json.dumps(dict(call.params))}")
     return 0
 
 
-def _asked(arguments: argparse.Namespace) -> Mapping[str, Any]:
+def _asked(arguments: argparse.Namespace) -> Call:
     """The request in a role and at a step of an episode. Raises ConfigError if nothing of the kind was asked."""
-    from polyfold.errors import ConfigError
-    from polyfold.rollout import run_episode
+    from polyfold.api import attempt
 
     experiment = experiment_from(arguments)
     garment = garment_from(arguments, experiment)
-    episode = run_episode(experiment, garment, arguments.instruction, arguments.seed)
-    entries = episode.calls
-    wanted = [entry for entry in entries if entry.role == arguments.role]
+    episode = attempt(arguments.instruction, garment, arguments.seed, experiment)
+    wanted = [call for call in episode.calls if call.role == arguments.role]
     if not wanted:
-        roles = ", ".join(dict.fromkeys(entry.role for entry in entries)) or "none"
+        roles = ", ".join(dict.fromkeys(call.role for call in episode.calls)) or "none"
         raise ConfigError(_with_failure(f"nothing was asked in the role {arguments.role!r}, but in {roles}", episode))
-    found = [entry for entry in wanted if entry.step in (None, arguments.step)]
+    found = [call for call in wanted if call.step in (None, arguments.step)]
     if not found:
-        steps = ", ".join(str(step) for step in dict.fromkeys(entry.step for entry in wanted))
+        steps = ", ".join(str(step) for step in dict.fromkeys(call.step for call in wanted))
         raise ConfigError(
             _with_failure(f"{arguments.role!r} was not asked at step {arguments.step}, but at {steps}", episode)
         )
     return found[0]
 
 
-def _with_failure(problem: str, episode: Any) -> str:
+def _with_failure(problem: str, episode: Episode) -> str:
     ended = f"; the episode ended early ({episode.failure.reason})" if episode.failure else ""
     return f"{problem}{ended}; choose among them, or give another --instruction, --planner or --step"
 
 
-def _tokens(messages: Sequence[Mapping[str, Any]], model: str | None) -> tuple[int, str]:
+def _tokens(messages: Sequence[Message], model: str | None) -> tuple[int, str]:
     """The number of tokens and how it was counted; a picture is not counted."""
     if model is None:
         characters = sum(len(_text(message)) for message in messages)
         return math.ceil(characters / CHARACTERS_PER_TOKEN), f"estimated at {CHARACTERS_PER_TOKEN:g} characters each"
-    from polyfold import plugins
-
     counter = plugins.component_class("llms", "litellm")
     texts = [{"role": message["role"], "content": _text(message)} for message in messages]
     return counter.count_tokens(model, texts), f"by the tokenizer of {model}"
 
 
-def _text(message: Mapping[str, Any]) -> str:
+def _text(message: Message) -> str:
     content = message["content"]
     if isinstance(content, str):
         return content

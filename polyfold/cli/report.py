@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-__all__ = ["configure", "run"]
+import polyfold
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -24,10 +24,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the page and say where it is."""
-    from polyfold.analysis import open_results
     from polyfold.viz.report import write_report
 
-    noise = None if arguments.noise_floor is None else open_results(arguments.noise_floor)
+    noise = None if arguments.noise_floor is None else polyfold.open(arguments.noise_floor)
     path = write_report(arguments.run_directory, arguments.out, noise)
     print(f"{path} ({path.stat().st_size / 1e6:.1f} MB)")
     return 0

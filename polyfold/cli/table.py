@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+import polyfold
+from polyfold.analysis import provider_table
 from polyfold.analysis._tables import FORMATS
-
-__all__ = ["configure", "run"]
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -29,16 +29,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the table."""
-    from polyfold.analysis import compare, open_results, provider_table, table
-
-    found = open_results(arguments.out)
+    found = polyfold.open(arguments.out)
     found = found.of_length(arguments.steps) if arguments.steps else found
-    noise = None if arguments.noise_floor is None else open_results(arguments.noise_floor)
+    noise = None if arguments.noise_floor is None else polyfold.open(arguments.noise_floor)
     if arguments.compare:
-        made = compare(found, *arguments.compare)
+        made = polyfold.compare(found, *arguments.compare)
     elif arguments.by == "provider":
         made = provider_table(found)
     else:
-        made = table(found, groups=arguments.by, noise=noise)
+        made = polyfold.table(found, groups=arguments.by, noise=noise)
     print(getattr(made, arguments.format)())
     return 0

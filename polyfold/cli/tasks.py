@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-__all__ = ["configure", "run"]
+from polyfold import plugins
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +23,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _list_suites() -> None:
-    from polyfold import plugins
     from polyfold.evaluation import suite
 
     for name in plugins.names("tasks"):

@@ -17,6 +17,7 @@ from polyfold.garments import Garment
 from polyfold.geometry import Camera
 from polyfold.logs import fingerprint
 from polyfold.logs._host import processor
+from polyfold.plugins.interfaces import HasReferenceConfig
 from polyfold.rollout import run_episode
 from polyfold.tasks import Task, fold_lines
 from polyfold.tasks._ideal import fold_step_by_step
@@ -56,14 +57,14 @@ def reference_for(task: Task, garment: Garment, seed: int, simulator: ComponentS
         task: the task.
         garment: the garment.
         seed: of the pose.
-        simulator: the simulator and its parameters; one that injects faults or noise says in ``faultless(config)``
-            which simulator to use instead, as a name and parameters.
+        simulator: the simulator and its parameters; one that injects faults or noise says which to use
+            instead (:class:`polyfold.plugins.interfaces.HasReferenceConfig`).
     """
-    experiment = Experiment.of(agent="oracle", simulator=_faultless(simulator))
+    experiment = Experiment.of(agent="oracle", simulator=_reference_simulator(simulator))
     path = cache_folder() / "references" / f"{_key(task, garment, seed, experiment)}.npz"
     if path.exists():
         return _read(path)
-    episode = run_episode(experiment, garment, "", seed, task=task)
+    episode = run_episode(experiment, garment, "", seed, task=task, role="reference")
     if episode.error is not None:
         raise episode.error
     mask = final_mask(episode)
@@ -87,12 +88,13 @@ def ideal_reference(task: Task, garment: Garment, flat: SimState) -> Reference:
     return Reference(Outcome(flat, after[-1], folded[-1].mask), after)
 
 
-def _faultless(simulator: ComponentSpec) -> ComponentSpec:
-    cls = plugins.component_class("simulators", simulator.name)
-    if not hasattr(cls, "faultless"):
+def _reference_simulator(simulator: ComponentSpec) -> ComponentSpec:
+    """The simulator that references are made in: without the faults that one may inject."""
+    cls, config = plugins.configured("simulators", simulator.name, simulator.params)
+    if not isinstance(cls, HasReferenceConfig):
         return simulator
-    name, params = cls.faultless(cls.Config(**simulator.params))
-    return ComponentSpec(name=name, params=params)
+    name, params = cls.reference_config(config)
+    return ComponentSpec(name=name, params=dict(params))
 
 
 def _key(task: Task, garment: Garment, seed: int, experiment: Experiment) -> str:

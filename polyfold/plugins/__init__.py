@@ -1,27 +1,32 @@
-"""Discovery of plugins and the catalog of components: names become objects here and nowhere else."""
+"""Discovery of plugins and the catalog of components: names become objects here and nowhere else.
+
+What each kind of component must do stands in :mod:`polyfold.plugins.interfaces`, how to register one and how to watch
+runs in :mod:`polyfold.plugins.hookspecs`. The functions here are the methods of the process's own :class:`Host`.
+"""
 
 from polyfold.plugins._catalog import Component, Plugin, Problem
-from polyfold.plugins._host import (
-    by_hand,
-    catalog,
-    component_class,
-    create,
-    create_chosen,
-    find,
-    names,
-    notify,
-    observe,
-    portable,
-    refresh,
-    register,
-    unobserve,
-    unregister,
-)
-from polyfold.plugins._inspection import files_of, parameter_names, parameters, prompts_of
-from polyfold.plugins.hookspecs import plural, singular
+from polyfold.plugins._host import HOST, Host
+from polyfold.plugins._inspection import files_read, parameter_names, parameters, prompts_read
+
+by_hand = HOST.by_hand
+catalog = HOST.catalog
+component_class = HOST.component_class
+configured = HOST.configured
+create = HOST.create
+create_chosen = HOST.create_chosen
+find = HOST.find
+names = HOST.names
+notify = HOST.notify
+observe = HOST.observe
+portable = HOST.portable
+refresh = HOST.refresh
+register = HOST.register
+unobserve = HOST.unobserve
+unregister = HOST.unregister
 
 __all__ = [
     "Component",
+    "Host",
     "Plugin",
     "Problem",
     "by_hand",
@@ -29,19 +34,17 @@ __all__ = [
     "component_class",
     "create",
     "create_chosen",
-    "files_of",
+    "files_read",
     "find",
     "names",
     "notify",
     "observe",
     "parameter_names",
     "parameters",
-    "plural",
     "portable",
-    "prompts_of",
+    "prompts_read",
     "refresh",
     "register",
-    "singular",
     "unobserve",
     "unregister",
 ]

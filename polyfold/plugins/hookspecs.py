@@ -6,7 +6,7 @@ A plugin is a module (or any object) named by an entry point in the group ``poly
     my-plugin = "my_package.hooks"
 
     # my_package/hooks.py
-    from polyfold.hookspecs import hookimpl
+    from polyfold import hookimpl
 
     @hookimpl
     def register_policies(register):
@@ -20,20 +20,25 @@ Each ``register_*`` hook gets a function ``register(name, target, summary="", ne
 * ``needs``: distributions to install before the component can be used, as pip names them; a missing one is answered
   with the pip command.
 
-What the class must do stands in :mod:`polyfold.interfaces`. The ``on_*`` hooks observe: what they return is ignored,
-and an error in one is recorded against its plugin without disturbing the run. No hook sits in the data path.
+What the class must do stands in :mod:`polyfold.plugins.interfaces`. The ``on_*`` hooks observe: what they return is
+ignored, and an error in one is recorded against its plugin without disturbing the run. A hook may take fewer arguments
+than its specification has. No hook sits in the data path.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pluggy
 
 if TYPE_CHECKING:
-    from polyfold.types import Episode, EpisodeStart, Step
+    from pydantic import BaseModel
 
+    from polyfold.types import Episode, EpisodeStart, Role, Step
+
+
+__all__ = ["KINDS", "hookimpl", "hookspec"]
 
 hookspec = pluggy.HookspecMarker("polyfold")
 hookimpl = pluggy.HookimplMarker("polyfold")
@@ -68,46 +73,45 @@ def plural(field: str) -> str:
 
 @hookspec
 def register_simulators(register: Register) -> None:
-    """Register simulators: :class:`polyfold.interfaces.Simulator`, cloth on a table under a camera."""
+    """Register simulators: :class:`polyfold.plugins.interfaces.Simulator`, cloth on a table under a camera."""
 
 
 @hookspec
 def register_segmenters(register: Register) -> None:
-    """Register segmenters: :class:`polyfold.interfaces.Segmenter`, picture to mask."""
+    """Register segmenters: :class:`polyfold.plugins.interfaces.Segmenter`, picture to mask."""
 
 
 @hookspec
 def register_groundings(register: Register) -> None:
-    """Register groundings: :class:`polyfold.interfaces.Grounding`, picture and mask to scene."""
+    """Register groundings: :class:`polyfold.plugins.interfaces.Grounding`, picture and mask to scene."""
 
 
 @hookspec
 def register_planners(register: Register) -> None:
-    """Register planners: :class:`polyfold.interfaces.Planner`, sentence to subgoals to fold lines."""
+    """Register planners: :class:`polyfold.plugins.interfaces.Planner`, sentence to subgoals to fold lines."""
 
 
 @hookspec
 def register_policies(register: Register) -> None:
-    """Register policies: :class:`polyfold.interfaces.Policy`, fold line to picks and places."""
+    """Register policies: :class:`polyfold.plugins.interfaces.Policy`, fold line to picks and places."""
 
 
 @hookspec
 def register_llms(register: Register) -> None:
-    """Register language-model backends: :class:`polyfold.interfaces.LLM`, messages to reply."""
+    """Register language-model backends: :class:`polyfold.plugins.interfaces.LLM`, messages to reply."""
 
 
 @hookspec
 def register_agents(register: Register) -> None:
-    """Register agents: :class:`polyfold.interfaces.Agent`, instruction and pictures to actions.
+    """Register agents: :class:`polyfold.plugins.interfaces.Agent`, instruction and pictures to actions.
 
-    An agent made of components names their kinds, singular, in a class attribute ``uses``, for example
-    ``("segmenter", "policy")``; it is then constructed as ``Class(config, segmenter=..., policy=...)``.
+    An agent made of components names their kinds: :class:`polyfold.plugins.interfaces.UsesComponents`.
     """
 
 
 @hookspec
 def register_garments(register: Register) -> None:
-    """Register kinds of garment: :class:`polyfold.interfaces.GarmentKind`, polygon template and generator.
+    """Register kinds of garment: :class:`polyfold.plugins.interfaces.GarmentKind`, polygon template and generator.
 
     The name is the kind, as users type it: ``--garment skirt``.
     """
@@ -117,14 +121,15 @@ def register_garments(register: Register) -> None:
 def register_tasks(register: Register) -> None:
     """Register task suites: ``target`` is ``"package:path/within/it.toml"``.
 
-    A suite holds tasks, whose folds are given (:mod:`polyfold.tasks`), goals, which say what counts as done and leave
-    the folds to the planner (:mod:`polyfold.goals`), or both. ``polyfold evaluate`` runs it when a study names it.
+    A suite holds tasks, whose folds are given (:class:`polyfold.tasks.Task`), goals, which say what counts as done and
+    leave the folds to the planner (:class:`polyfold.tasks.OpenTask`), or both. ``polyfold evaluate`` runs it when a
+    study names it.
     """
 
 
 @hookspec
 def register_metrics(register: Register) -> None:
-    """Register metrics: :class:`polyfold.interfaces.Metric`, final state and reference to a number."""
+    """Register metrics: :class:`polyfold.plugins.interfaces.Metric`, final state and reference to a number."""
 
 
 @hookspec
@@ -143,25 +148,55 @@ def register_prompts(register: Register) -> None:
 
 
 @hookspec
-def on_study_start(study: Any) -> None:
-    """A grid of episodes begins."""
+def on_study_start(study: BaseModel) -> None:
+    """A study begins or goes on: fires in the process that was asked to run it.
+
+    Args:
+        study: what is run, a :class:`polyfold.Study`.
+    """
 
 
 @hookspec
-def on_episode_start(start: EpisodeStart) -> None:
-    """An episode begins: the garment lies on the table and the subgoals are known."""
+def on_episode_start(start: EpisodeStart, role: Role) -> None:
+    """An episode begins: the garment lies on the table and the subgoals are known.
+
+    Fires where the episode runs, which in a study with workers is a worker process; so do ``on_step`` and
+    ``on_episode_end``. An agent that refuses before it has subgoals has no start, and an end nevertheless.
+
+    Args:
+        start: what is known by then.
+        role: ``method`` for an episode that was asked for; ``reference`` for the oracle's own, which a study compares
+            with and keeps, so that it runs once and is then read from the cache.
+    """
 
 
 @hookspec
-def on_step(step: Step) -> None:
-    """One fold was executed."""
+def on_step(step: Step, role: Role) -> None:
+    """One fold was executed.
+
+    Args:
+        step: what was decided and done, and the true state after it.
+        role: as for :func:`on_episode_start`.
+    """
 
 
 @hookspec
-def on_episode_end(episode: Episode) -> None:
-    """An episode ended, well or not; ``episode.failure`` says which."""
+def on_episode_end(episode: Episode, role: Role) -> None:
+    """An episode ended, well or not; ``episode.failure`` says which.
+
+    In ``polyfold fold`` it is judged by then; in a study its scores are in the run's log, after it.
+
+    Args:
+        episode: everything that happened.
+        role: as for :func:`on_episode_start`.
+    """
 
 
 @hookspec
-def on_study_end(study: Any) -> None:
-    """A grid of episodes ended."""
+def on_study_end(study: BaseModel, finished: int) -> None:
+    """A study ended, or was interrupted: fires where ``on_study_start`` did.
+
+    Args:
+        study: what was run, a :class:`polyfold.Study`.
+        finished: episodes that are finished; fewer than the study has if it was interrupted.
+    """

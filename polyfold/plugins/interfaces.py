@@ -3,6 +3,9 @@
 Every component class may carry a nested pydantic model ``Config``; its fields are the component's parameters on the
 command line, in TOML and in notebooks, and an instance of it is the constructor's only argument. A class without
 ``Config`` takes no argument. Keep heavy imports inside methods, so that reading a ``Config`` stays cheap.
+
+Beside the protocol of each kind stand those of what a component may do as well; they are looked for with
+``isinstance``.
 """
 
 from __future__ import annotations
@@ -10,17 +13,44 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any, ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.garments import Garment
+from polyfold.garments import Garment, Pattern
 from polyfold.geometry import FoldLine
+from polyfold.plugins._traits import Configurable, ReadsFiles, ReadsPrompts, TakesArgument, UsesComponents
 from polyfold.polygon import Template
 from polyfold.types import Action, ActionMap, Decision, Observation, Outcome, Scene, SimState, Subgoal, Threshold
 from polyfold.types._conversation import Message, Reply
+
+__all__ = [
+    "LLM",
+    "Agent",
+    "Configurable",
+    "Conversation",
+    "GarmentKind",
+    "Goal",
+    "Grounding",
+    "HasReferenceConfig",
+    "LabelledMetric",
+    "Metric",
+    "Planner",
+    "Policy",
+    "ReadsFiles",
+    "ReadsPrompts",
+    "RecordsMotion",
+    "Segmenter",
+    "SewnKind",
+    "Simulator",
+    "StepwisePlanner",
+    "SuccessCriterion",
+    "TakesArgument",
+    "UsesComponents",
+    "ValuesPicks",
+    "action_map_later",
+]
 
 
 @runtime_checkable
@@ -29,9 +59,11 @@ class Simulator(Protocol):
 
     def reset(self, garment: Garment, seed: int) -> Observation:
         """Lay the garment flat in a pose drawn from ``seed`` and return the first picture."""
+        ...
 
     def observe(self) -> Observation:
         """Take a picture."""
+        ...
 
     def execute(self, action: Action) -> Observation:
         """Do one fold, let the cloth settle and take a picture.
@@ -39,15 +71,38 @@ class Simulator(Protocol):
         A pick off the cloth grasps nothing. Raises ActionError for pixels outside the image and SimulationError if the
         cloth diverges; the state before the fold is kept in both cases.
         """
+        ...
 
     def state(self) -> SimState:
         """Privileged state, for metrics, oracle and rewards only."""
+        ...
 
     def restore(self, state: SimState) -> None:
         """Return to a state of this garment, so that several picks can be tried from one."""
+        ...
 
     def close(self) -> None:
         """Release what is held; the simulator can't be used afterwards."""
+        ...
+
+
+@runtime_checkable
+class RecordsMotion(Protocol):
+    """A simulator that can show the cloth while it moves, for animations."""
+
+    def record(self, recorder: Callable[[Observation], Any], frames_per_second: float = 15.0) -> None:
+        """Hand a picture to ``recorder`` so many times per simulated second, from now on."""
+        ...
+
+
+@runtime_checkable
+class HasReferenceConfig(Protocol):
+    """A simulator that injects faults or noise, which references must not have."""
+
+    @classmethod
+    def reference_config(cls, config: Any) -> tuple[str, Mapping[str, Any]]:
+        """Name and parameters of the simulator in which the references of this one are made."""
+        ...
 
 
 @runtime_checkable
@@ -56,6 +111,7 @@ class Segmenter(Protocol):
 
     def segment(self, observation: Observation) -> NDArray[np.bool_]:
         """Mask of the cloth, bool, shape (H, W). Raises GroundingError when there is none."""
+        ...
 
 
 @runtime_checkable
@@ -82,6 +138,7 @@ class Grounding(Protocol):
         Raises:
             GroundingError: if the picture can't be explained.
         """
+        ...
 
 
 @runtime_checkable
@@ -90,6 +147,7 @@ class LLM(Protocol):
 
     def complete(self, messages: Sequence[Message], params: Mapping[str, Any]) -> Reply:
         """Answer a conversation. Raises LLMError when no answer can be had."""
+        ...
 
 
 @runtime_checkable
@@ -98,28 +156,38 @@ class Conversation(Protocol):
 
     def ask(self, role: str, messages: Sequence[Message], params: Mapping[str, Any] | None = None) -> Reply:
         """Ask in a role (``subgoals``, ``fold_line``, ...) and record messages and reply."""
+        ...
 
     def reject(self, reason: str) -> None:
         """Record that the last reply can't be used, and why."""
+        ...
 
 
 @runtime_checkable
 class Planner(Protocol):
-    """Splits an instruction into subgoals and turns each into a fold line (or, for direct planners, an action).
-
-    A planner that doesn't split instructions has a class attribute ``decomposes = False``: it returns the instruction
-    as its only subgoal and is asked to plan it again and again, each time on the scene as seen then, until it returns
-    None.
-    """
+    """Splits an instruction into subgoals and turns each into a fold line (or, for direct planners, an action)."""
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Decompose an instruction. Raises RefusedError with the reason when it can't or must not be done."""
+        ...
 
     def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine | Action | None:
         """Plan one step on the scene as seen now; None when nothing is left to do.
 
         Raises PlanError when no valid answer came after the repairs.
         """
+        ...
+
+
+@runtime_checkable
+class StepwisePlanner(Planner, Protocol):
+    """A planner that does not split instructions: it returns the instruction as its only subgoal.
+
+    With ``decomposes = False`` it is asked to plan it again and again, each time on the scene as seen then, until it
+    returns None.
+    """
+
+    decomposes: ClassVar[bool]
 
 
 @runtime_checkable
@@ -128,6 +196,7 @@ class Policy(Protocol):
 
     def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
         """Picks on the contour left of the line, places mirrored. Raises PlanError if no cloth lies left of it."""
+        ...
 
 
 @runtime_checkable
@@ -143,6 +212,7 @@ class ValuesPicks(Protocol):
         Called only when a picture is made, after the fold, so it must not change what the policy does. Raises
         PlanError if it has no values for this line; the picture then goes without.
         """
+        ...
 
 
 def action_map_later(policy: Policy, fold_line: FoldLine, scene: Scene) -> Callable[[], ActionMap] | None:
@@ -192,40 +262,66 @@ class Agent(Protocol):
 
     def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
         """Start an episode; return the subgoals, or an empty sequence if the agent has none."""
+        ...
 
     def decide(self, observation: Observation) -> Decision | None:
         """The next action, or None when done."""
+        ...
 
 
 @runtime_checkable
 class GarmentKind(Protocol):
-    """A kind of garment: its polygon template and a generator of seeded instances.
-
-    With a class attribute ``pattern``, a :class:`polyfold.garments.Pattern` that says how it is sewn, real garments of
-    the kind can be twinned and meshes imported.
-    """
+    """A kind of garment: its polygon template and a generator of seeded instances."""
 
     kind: ClassVar[str]
 
     def template(self) -> Template:
         """The polygon template."""
+        ...
 
     def generate(self, seed: int, edge_length: float = 0.0125) -> Garment:
         """The seeded garment, meshed at about ``edge_length`` [m]; the default is the kind's own.
 
         The same seed gives the same garment at every edge length.
         """
+        ...
+
+
+@runtime_checkable
+class SewnKind(Protocol):
+    """A kind of garment that says how it is sewn: real garments of it can be twinned and meshes imported."""
+
+    pattern: ClassVar[Pattern]
 
 
 @runtime_checkable
 class Metric(Protocol):
-    """Scores how an episode ended against one or more references; the nearest reference counts."""
+    """Scores how an episode ended against one or more references; the nearest reference counts.
+
+    Attributes:
+        unit: ``mm``, for example; empty if it has none.
+        higher_is_better: which way is good.
+    """
 
     unit: ClassVar[str]
     higher_is_better: ClassVar[bool]
 
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
         """The value, in ``unit``; NaN if there is nothing to measure."""
+        ...
+
+
+@runtime_checkable
+class LabelledMetric(Protocol):
+    """A metric that says how it is shown; others are headed by their registered name, with one digit.
+
+    Attributes:
+        label: heading of its column, without the unit.
+        digits: after the point.
+    """
+
+    label: ClassVar[str]
+    digits: ClassVar[int]
 
 
 @runtime_checkable
@@ -233,21 +329,3 @@ class SuccessCriterion(Protocol):
     """What counts as success: bounds on metrics that all must hold against one and the same reference."""
 
     thresholds: ClassVar[Sequence[Threshold]]
-
-
-@runtime_checkable
-class ReadsFiles(Protocol):
-    """A component that reads files besides its source: weights, cassettes. They belong to a run's fingerprint."""
-
-    @classmethod
-    def files_read(cls, config: Any) -> Sequence[Path]:
-        """The files that it reads with these parameters."""
-
-
-@runtime_checkable
-class ReadsPrompts(Protocol):
-    """A component that asks a language model with prompt files. They belong to a run's fingerprint."""
-
-    @classmethod
-    def prompts_read(cls, config: Any) -> Sequence[str]:
-        """The prompts that it may use with these parameters, each as ``role@version``."""

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from contextlib import closing
 
 from polyfold import plugins
 from polyfold.config import Experiment
 from polyfold.errors import (
-    ConfigError,
     GroundingError,
     LLMAccessError,
     LLMError,
@@ -19,29 +18,32 @@ from polyfold.errors import (
     SimulationError,
 )
 from polyfold.garments import Garment
-from polyfold.plugins.interfaces import Agent, Goal, Simulator
-from polyfold.rollout._privileged import guidance_for
+from polyfold.plugins.interfaces import Agent, Simulator, UsesComponents
+from polyfold.rollout._inputs import PRIVILEGED, Start, goal_for
 from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import Task
-from polyfold.types import Decision, Observation, SimState, Subgoal
-from polyfold.types._episode import Episode, EpisodeStart, Failure, Step
+from polyfold.types import Decision, Episode, EpisodeStart, Failure, Observation, Role, Step, Subgoal
 
 MAX_STEPS = 48
 """Folds, repeated ones included, after which an agent that never says it is done is stopped."""
 
-
-GUIDED = frozenset({"subgoal_texts", "subgoal_images", "goal_image", "fold_lines"})
-
-
-PRIVILEGED = frozenset({"fold_lines", "state", "simulator"})
+STAGES: Sequence[tuple[type[PolyfoldError], str]] = (
+    (RefusedError, "refused"),
+    (PlanError, "planning"),
+    (GroundingError, "grounding"),
+    (LLMError, "unanswered"),
+    (SimulationError, "execution"),
+)
+"""Errors that end an episode, and the stage of its failure; the first that fits counts."""
 
 
 def build_agent(experiment: Experiment) -> Agent:
-    """Construct the experiment's agent with the components that its ``uses`` asks for."""
-    choice = experiment.agent
-    uses: Sequence[str] = getattr(plugins.component_class("agents", choice.name), "uses", ())
+    """Construct the experiment's agent with the components that it is made of."""
+    spec = experiment.agent
+    agent = plugins.component_class("agents", spec.name.partition(":")[0])
+    uses = agent.uses if isinstance(agent, UsesComponents) else ()
     components = {field: plugins.create_chosen(experiment, field) for field in uses}
-    return plugins.create("agents", choice.name, choice.params, **components)
+    return plugins.create("agents", spec.name, spec.params, **components)
 
 
 def run_episode(
@@ -53,6 +55,8 @@ def run_episode(
     agent: Agent | None = None,
     task: Task | None = None,
     agent_seed: int | None = None,
+    role: Role = "method",
+    judge: Callable[[Episode], Episode] | None = None,
 ) -> Episode:
     """Run one episode from a sentence to the final picture.
 
@@ -68,146 +72,121 @@ def run_episode(
         simulator, agent: instances to reuse; by default they are constructed from the experiment.
         task: what guidance is made from, for agents that require some.
         agent_seed: decides the agent's random choices.
+        role: what observers are told that the episode is for.
+        judge: scores the episode before observers are told of its end.
 
     Raises:
         ConfigError: if the agent requires guidance and no task is given.
     """
-    template = plugins.create("garments", garment.kind).template()
+    if simulator is None:
+        with closing(plugins.create_chosen(experiment, "simulator")) as own:
+            return run_episode(
+                experiment, garment, instruction, seed, own, agent, task, agent_seed, role=role, judge=judge
+            )
     agent = agent or build_agent(experiment)
     transcript = Transcript(
         plugins.create_chosen(experiment, "llm") if "instruction" in agent.requires else None,
         {"task": task.id if task else None, "garment": garment.name, "seed": seed, "instruction": instruction},
     )
-    own_simulator = simulator is None
-    simulator = simulator or plugins.create_chosen(experiment, "simulator")
-    seconds: dict[str, float] = {}
-    try:
-        clock = time.perf_counter()
-        observation = start = simulator.reset(garment, seed)
-        initial_state = simulator.state()
-        seconds["reset"] = time.perf_counter() - clock
-        subgoals: tuple[Subgoal, ...] = ()
-        steps: list[Step] = []
-        error: PolyfoldError | None = None
+    clock = time.perf_counter()
+    observation = simulator.reset(garment, seed)
+    start = Start(experiment, garment, instruction, task, observation, simulator.state(), transcript, simulator)
+    rollout = _Rollout(start, agent, role)
+    rollout.seconds["reset"] = time.perf_counter() - clock
+    error = rollout.run(seed, seed if agent_seed is None else agent_seed)
+    episode = rollout.episode(seed, error)
+    episode = episode if judge is None else judge(episode)
+    plugins.notify("on_episode_end", episode=episode, role=role)
+    return episode
+
+
+class _Rollout:
+    """An episode while it runs."""
+
+    def __init__(self, start: Start, agent: Agent, role: Role) -> None:
+        self._start = start
+        self._agent = agent
+        self._role: Role = role
+        self._subgoals: tuple[Subgoal, ...] = ()
+        self._steps: list[Step] = []
+        self._seen = start.observation
+        self.seconds: dict[str, float] = {}
+
+    def run(self, seed: int, agent_seed: int) -> PolyfoldError | None:
+        """Decide and fold until the agent is done; returns what ended it early."""
         try:
-            clock = time.perf_counter()
-            goal = Goal(
-                kind=garment.kind,
-                template=template,
-                seed=seed if agent_seed is None else agent_seed,
-                **_told(agent.requires, instruction, transcript, simulator),
-                **_guidance(agent.requires, experiment, instruction, task, garment, initial_state, start),
-            )
-            subgoals = tuple(agent.begin(goal, observation))
-            seconds["subgoals"] = time.perf_counter() - clock
-            plugins.notify(
-                "on_episode_start",
-                start=EpisodeStart(instruction, garment, seed, subgoals, observation, seconds["subgoals"]),
-            )
-            while len(steps) < MAX_STEPS:
-                transcript.step = len(steps)
-                decision = agent.decide(observation)
-                if decision is None:
-                    break
-                step, observation = _execute(simulator, decision, observation, len(steps))
-                steps.append(step)
-                plugins.notify("on_step", step=step)
+            self._begin(seed, agent_seed)
+            while len(self._steps) < MAX_STEPS and self._fold():
+                pass
         except LLMAccessError:
             raise
-        except (PlanError, GroundingError, SimulationError, LLMError) as caught:
-            error = caught
-        for step in steps:
-            for stage, spent in step.seconds.items():
-                seconds[stage] = seconds.get(stage, 0.0) + spent
+        except tuple(kind for kind, _ in STAGES) as error:
+            return error
+        return None
+
+    def _begin(self, seed: int, agent_seed: int) -> None:
+        start = self._start
+        clock = time.perf_counter()
+        template = plugins.create("garments", start.garment.kind).template()
+        self._subgoals = tuple(self._agent.begin(goal_for(self._agent, start, template, agent_seed), self._seen))
+        spent = self.seconds["subgoals"] = time.perf_counter() - clock
+        told = EpisodeStart(start.instruction, start.garment, seed, self._subgoals, self._seen, spent)
+        plugins.notify("on_episode_start", start=told, role=self._role)
+
+    def _fold(self) -> bool:
+        """One more fold; False if the agent is done."""
+        self._start.transcript.step = len(self._steps)
+        decision = self._agent.decide(self._seen)
+        if decision is None:
+            return False
+        step, self._seen = _executed(self._start.simulator, decision, self._seen, len(self._steps))
+        self._steps.append(step)
+        for stage, spent in step.seconds.items():
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
+        plugins.notify("on_step", step=step, role=self._role)
+        return True
+
+    def episode(self, seed: int, error: PolyfoldError | None) -> Episode:
+        """What happened."""
+        start = self._start
         return Episode(
-            instruction=instruction,
-            garment=garment,
+            instruction=start.instruction,
+            garment=start.garment,
             seed=seed,
-            experiment=experiment,
-            privileged=bool(PRIVILEGED & agent.requires),
-            subgoals=subgoals,
-            steps=tuple(steps),
-            start=start,
-            final=observation,
-            initial_state=initial_state,
-            final_state=simulator.state(),
-            calls=tuple(transcript.calls),
-            seconds=seconds,
-            failure=_failure(error),
+            experiment=start.experiment,
+            privileged=bool(PRIVILEGED & self._agent.requires),
+            subgoals=self._subgoals,
+            steps=tuple(self._steps),
+            start=start.observation,
+            final=self._seen,
+            initial_state=start.state,
+            final_state=start.simulator.state(),
+            calls=tuple(start.transcript.calls),
+            seconds=self.seconds,
+            failure=None if error is None else Failure(_stage(error), str(error)),
             error=error,
         )
-    finally:
-        if own_simulator:
-            simulator.close()
 
 
-def _told(requires: frozenset[str], instruction: str, transcript: Transcript, simulator: Simulator) -> dict[str, Any]:
-    """Of sentence and privileged access, what the agent requires; the rest is withheld."""
-    unknown = requires - {"instruction", *GUIDED, *PRIVILEGED}
-    if unknown:
-        raise PlanError(f"the agent requires {sorted(unknown)}, which no loop can give; see polyfold.interfaces.Agent")
-    told: dict[str, Any] = {}
-    if "instruction" in requires:
-        told |= {"instruction": instruction, "conversation": transcript}
-    if "state" in requires:
-        told["state"] = simulator.state
-    if "simulator" in requires:
-        told["simulator"] = simulator
-    return told
-
-
-def _guidance(
-    requires: frozenset[str],
-    experiment: Experiment,
-    instruction: str,
-    task: Task | None,
-    garment: Garment,
-    flat: SimState,
-    seen: Observation,
-) -> dict[str, Any]:
-    """Of the guidance, what the agent requires; with ``final`` guidance the only subgoal is the goal."""
-    if not requires & GUIDED:
-        return {}
-    if task is None:
-        raise ConfigError("this agent needs guidance, which is made from a task; name one (--task)")
-    made = guidance_for(task, garment, flat, seen)
-    final = experiment.guidance == "final"
-    offered = {
-        "subgoal_texts": (instruction,) if final else made.subgoal_texts,
-        "subgoal_images": (made.goal_image,) if final else made.subgoal_images,
-        "goal_image": made.goal_image,
-        "fold_lines": made.fold_lines,
-    }
-    return {name: value for name, value in offered.items() if name in requires}
-
-
-def _execute(simulator: Simulator, decision: Decision, seen: Observation, index: int) -> tuple[Step, Observation]:
+def _executed(simulator: Simulator, decision: Decision, seen: Observation, index: int) -> tuple[Step, Observation]:
+    """The step of a decision, and the picture after it."""
     clock = time.perf_counter()
     after = simulator.execute(decision.action)
     seconds = {**decision.seconds, "execution": time.perf_counter() - clock}
     step = Step(
-        index,
-        decision.subgoal,
-        decision.fold_line,
-        decision.scene,
-        decision.action,
-        seen,
-        seconds,
-        simulator.state(),
-        decision.retry,
-        decision.action_map,
+        index=index,
+        subgoal=decision.subgoal,
+        fold_line=decision.fold_line,
+        scene=decision.scene,
+        action=decision.action,
+        observation=seen,
+        seconds=seconds,
+        after=simulator.state(),
+        retry=decision.retry,
+        action_map=decision.action_map,
     )
     return step, after
 
 
-def _failure(error: PolyfoldError | None) -> Failure | None:
-    if error is None:
-        return None
-    stages = {
-        RefusedError: "refused",
-        PlanError: "planning",
-        GroundingError: "grounding",
-        LLMError: "unanswered",
-    }
-    stage = next((name for kind, name in stages.items() if isinstance(error, kind)), "execution")
-    return Failure(stage, str(error))
+def _stage(error: PolyfoldError) -> str:
+    return next(stage for kind, stage in STAGES if isinstance(error, kind))

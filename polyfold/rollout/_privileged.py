@@ -22,7 +22,7 @@ Image = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False)
-class Guidance:
+class PrivilegedInputs:
     """Accurate help for one garment as it lies.
 
     Attributes:
@@ -41,8 +41,8 @@ class Guidance:
         return self.subgoal_images[-1]
 
 
-def guidance_for(task: Task, garment: Garment, flat: SimState, seen: Observation) -> Guidance:
-    """Make the guidance for a task on a garment that lies flat.
+def privileged_inputs(task: Task, garment: Garment, flat: SimState, seen: Observation) -> PrivilegedInputs:
+    """Make them for a task on a garment that lies flat.
 
     Args:
         task: the task; its kind must be the garment's.
@@ -53,7 +53,7 @@ def guidance_for(task: Task, garment: Garment, flat: SimState, seen: Observation
     lines = fold_lines(task, flat.keypoint_pixels())
     folded = fold_step_by_step(flat, garment.mesh, lines)
     images = tuple(_drawn(ideal.mask, garment.colours[0], seen.rgb[0, 0]) for ideal in folded)
-    return Guidance(tuple(lines), tuple(describe(fold) for fold in task.steps), images)
+    return PrivilegedInputs(tuple(lines), tuple(describe(fold) for fold in task.steps), images)
 
 
 def _drawn(mask: NDArray[np.bool_], cloth: tuple[int, int, int], table: Image) -> Image:

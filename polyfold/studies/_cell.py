@@ -34,7 +34,7 @@ from polyfold.logs._records import BoundsRecord
 from polyfold.logs._writing import episode_fields, finite
 from polyfold.plugins.interfaces import Goal
 from polyfold.rollout import build_agent, run_episode
-from polyfold.rollout._loop import GUIDED, PRIVILEGED
+from polyfold.rollout._inputs import GUIDED, PRIVILEGED
 from polyfold.studies._cells import Cell
 from polyfold.studies._study import Study, experiment_of
 from polyfold.tasks import OpenTask, Task, fold_lines

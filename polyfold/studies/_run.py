@@ -7,7 +7,7 @@ model. A run does not go on with changed code, prompts or weights unless that is
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -25,9 +25,10 @@ from polyfold.logs import (
     picture_path,
     write_atomically,
 )
-from polyfold.studies._cell import PICTURES, Render, evaluate_with_picture
+from polyfold.plugins.interfaces import LabelledMetric, Metric
+from polyfold.studies._cell import PICTURES, Render, Scored, evaluate_with_picture
 from polyfold.studies._cells import Cell, cells
-from polyfold.studies._executors import Results, _results
+from polyfold.studies._executors import in_processes, on_dask
 from polyfold.studies._study import Study, experiment_of
 
 ENGINES = ("local", "dask")
@@ -84,12 +85,18 @@ def evaluate(
         _check_language_models(study, missing)
         if workers > 1 or engine == "dask":
             _check_portable()
+    plugins.notify("on_study_start", study=study)
     job = partial(evaluate_with_picture, study, pictures=pictures, render=render)
-    with closing(_results(job, missing, workers, engine, address)) as results:
-        shown = _with_progress(results, study, len(wanted), list(done.values()), progress and bool(missing))
-        for cell, (record, picture) in shown:
-            run.append(_with_picture(run.path, cell, record, picture))
-    finished = run.records()
+    dask = missing and engine == "dask"
+    results = on_dask(job, missing, workers, address) if dask else in_processes(job, missing, workers)
+    try:
+        with closing(results):
+            shown = _with_progress(results, study, len(wanted), list(done.values()), progress and bool(missing))
+            for cell, (record, picture) in shown:
+                run.append(_with_picture(run.path, cell, record, picture))
+    finally:
+        finished = run.records()
+        plugins.notify("on_study_end", study=study, finished=sum(cell.key in finished for cell in wanted))
     return [finished[cell.key] for cell in wanted]
 
 
@@ -111,13 +118,14 @@ def metric_records(study: Study) -> dict[str, MetricRecord]:
 
 
 def _metric_record(name: str) -> MetricRecord:
-    metric, summary = plugins.component_class("metrics", name), plugins.find("metrics", name).summary
+    metric: Metric = plugins.component_class("metrics", name)
+    labelled = isinstance(metric, LabelledMetric)
     return MetricRecord(
-        label=getattr(metric, "label", name),
+        label=metric.label if labelled else name,
         unit=metric.unit,
-        digits=getattr(metric, "digits", 1),
+        digits=metric.digits if labelled else 1,
         higher_is_better=metric.higher_is_better,
-        summary=summary,
+        summary=plugins.find("metrics", name).summary,
     )
 
 
@@ -140,8 +148,8 @@ def _with_picture(folder: Path, cell: Cell, record: StudyEpisodeRecord, picture:
 
 
 def _with_progress(
-    results: Results, study: Study, total: int, done: Sequence[StudyEpisodeRecord], shown: bool
-) -> Results:
+    results: Iterable[tuple[Cell, Scored]], study: Study, total: int, done: Sequence[StudyEpisodeRecord], shown: bool
+) -> Iterator[tuple[Cell, Scored]]:
     from tqdm import tqdm
 
     criterion = study.criteria[0]

@@ -18,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment, read_toml
 from polyfold.errors import ConfigError, did_you_mean, validation_problem
+from polyfold.plugins import hookspecs
 
 Overrides = dict[str, Any]
 
@@ -164,7 +165,7 @@ def _check_parameters(experiment: Experiment, variant: str) -> None:
         spec = getattr(experiment, field)
         if not isinstance(spec, ComponentSpec):
             continue
-        known = plugins.parameter_names(plugins.plural(field), spec) if spec.params else ()
+        known = plugins.parameter_names(hookspecs.plural(field), spec) if spec.params else ()
         for parameter in spec.params:
             if parameter not in known:
                 raise ConfigError(

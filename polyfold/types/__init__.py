@@ -6,7 +6,7 @@ x right, y away from the viewer, z up from the table. :class:`polyfold.geometry.
 
 from polyfold.types._conversation import Call, Message, Reply
 from polyfold.types._decisions import Action, ActionMap, Decision, Subgoal
-from polyfold.types._episode import Episode, EpisodeStart, Failure, Step
+from polyfold.types._episode import Episode, EpisodeStart, Failure, Role, Step
 from polyfold.types._fidelity import Fidelity
 from polyfold.types._perception import Observation, Scene
 from polyfold.types._scores import Outcome, Threshold
@@ -25,6 +25,7 @@ __all__ = [
     "Observation",
     "Outcome",
     "Reply",
+    "Role",
     "Scene",
     "SimState",
     "Step",

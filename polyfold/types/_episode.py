@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ from polyfold.types._fidelity import Fidelity
 from polyfold.types._perception import Observation, Scene
 from polyfold.types._state import SimState
 from polyfold.types._views import view_of
+
+Role = Literal["method", "reference"]
+"""Whether an episode was asked for, or is the oracle's own that others are compared with."""
 
 
 @dataclass(frozen=True, eq=False)

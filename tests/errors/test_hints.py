@@ -89,3 +89,4 @@ def test_what_the_message_names_already_is_left_out():
     with pytest.raises(ValidationError) as caught:
         Settings(policy={"gamma": 2})
     assert validation_problem(caught.value, below=1).startswith("has a bad value for 'gamma':")
+    assert validation_problem(caught.value, below=2).startswith("has a bad value: Input")

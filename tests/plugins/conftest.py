@@ -9,7 +9,7 @@ import pytest
 
 EXAMPLE = Path(__file__).parents[2] / "plugins" / "polyfold-example"
 
-HOOKIMPL = "from polyfold.hookspecs import hookimpl\n\n@hookimpl\n"
+HOOKIMPL = "from polyfold import hookimpl\n\n@hookimpl\n"
 SOURCES = {
     "misspelt": HOOKIMPL + "def register_polices(register):\n    register('a', 'x:Y')\n",
     "undecorated": "def register_policies(register):\n    register('bare', 'undecorated:Bare')\n",

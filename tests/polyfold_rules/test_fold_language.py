@@ -16,7 +16,7 @@ from polyfold_rules.shapes.folds import CORNERS, EDGES, OPPOSITE_CORNER, Fold, s
 from polyfold_rules.shapes.parts import Garment, NotUnderstoodError
 from polyfold_rules.wishes.instruction import plan
 
-from experiments.benchmarks.language.language import accepted, judge_set, laid_garment, part_of_set, plan_ideally
+from experiments.benchmarks.language.understanding import accepted, judge_set, laid_garment, part_of_set, plan_ideally
 from polyfold.errors import RefusedError
 from polyfold.geometry import fill_polygon
 from polyfold.plugins import create, find

@@ -112,7 +112,7 @@ class Trial:
         return float(error[moved].mean()), float(error[~moved].mean()) if (~moved).any() else 0.0
 
     def ideal_mask(self, triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
-        """Where the ideally folded garment would be seen, shape (H, W)."""
+        """Where the ideally folded garment, triangles of shape (T, 3), would be seen: bool, shape (H, W)."""
         return mask_of(self.ideal, triangles, self._size)
 
     def _point(self, name: str) -> Floats:
@@ -130,7 +130,7 @@ class Trial:
 
 
 def mask_of(pixels: Floats, triangles: NDArray[np.int32], size: tuple[int, int]) -> NDArray[np.bool_]:
-    """Union of triangles with corners at ``pixels``, shape (H, W)."""
+    """Union of triangles, shape (T, 3), with corners at ``pixels`` [px], shape (N, 2): bool, shape (H, W)."""
     import cv2
 
     mask = np.zeros(size, np.uint8)
@@ -140,7 +140,7 @@ def mask_of(pixels: Floats, triangles: NDArray[np.int32], size: tuple[int, int])
 
 
 def cloth_mask(observation: Observation) -> NDArray[np.bool_]:
-    """Where the depth picture shows cloth."""
+    """Where the depth picture shows cloth, bool, shape (H, W)."""
     return observation.depth < observation.camera.elevation - CLOTH_HEIGHT
 
 

@@ -1,0 +1,60 @@
+"""Options that choose components, shared by the verbs: ``--policy caso``, ``--llm NAME:MODEL``, ``--set``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from typing import Any, get_args
+
+from polyfold import config
+from polyfold.config import ComponentSpec, Experiment
+from polyfold.errors import ConfigError
+
+KINDS = tuple(name for name, field in Experiment.model_fields.items() if field.annotation is ComponentSpec)
+GUIDANCE = get_args(Experiment.model_fields["guidance"].annotation)
+
+
+def add_component_options(parser: argparse.ArgumentParser, kinds: Sequence[str] = KINDS) -> None:
+    """Add one option per kind of component that the verb uses, the config file and single parameters."""
+    group = parser.add_argument_group("components (see: polyfold plugins)")
+    for kind in kinds:
+        default = getattr(Experiment(), kind).name
+        group.add_argument(f"--{kind}", metavar="NAME[:ARG]", help=f"default: {default}")
+    if "agent" in kinds:
+        default = Experiment().guidance
+        group.add_argument("--guidance", choices=GUIDANCE, help=f"for agents that need guidance (default: {default})")
+    group.add_argument("--config", metavar="FILE", help="TOML file with components and parameters")
+    group.add_argument(
+        "--set",
+        metavar="KIND.PARAM=VALUE",
+        action="append",
+        default=[],
+        help="one parameter, for example --set simulator.cloth_friction=0.6; may be repeated",
+    )
+
+
+def experiment_from(arguments: argparse.Namespace) -> Experiment:
+    """The experiment that the options describe. Raises ConfigError naming the wrong option."""
+    experiment = config.load(arguments.config) if arguments.config else Experiment()
+    given = {name: getattr(arguments, name, None) for name in (*KINDS, "guidance")}
+    experiment = experiment.override({name: value for name, value in given.items() if value})
+    for assignment in arguments.set:
+        kind, param, value = _parse(assignment)
+        spec: ComponentSpec = getattr(experiment, kind)
+        experiment = experiment.override({kind: {"name": spec.name, "params": {**spec.params, param: value}}})
+    return experiment
+
+
+def _parse(assignment: str) -> tuple[str, str, Any]:
+    path, equals, text = assignment.partition("=")
+    kind, dot, param = path.partition(".")
+    if not (equals and dot and kind in KINDS):
+        raise ConfigError(
+            f"--set {assignment!r} does not read KIND.PARAM=VALUE with KIND one of {', '.join(KINDS)}; "
+            "for example --set simulator.cloth_friction=0.6"
+        )
+    try:
+        return kind, param, json.loads(text)
+    except json.JSONDecodeError:
+        return kind, param, text
