@@ -152,8 +152,8 @@ def _specs(experiment: Experiment) -> Iterator[tuple[str, ComponentSpec]]:
 def _fields_in_use(experiment: Experiment) -> dict[str, None]:
     """The agent with what it is made of, its language model if it has one, and what shows and judges its episode."""
     agent = plugins.component_class("agents", experiment.agent.name.partition(":")[0])
-    uses = agent.uses if isinstance(agent, UsesComponents) else ()
     asks = ("llm",) if "instruction" in agent.requires else ()
+    uses = agent.uses if isinstance(agent, UsesComponents) else ()
     return dict.fromkeys(("agent", "simulator", "segmenter", *uses, *asks))
 
 

@@ -78,6 +78,13 @@ class LearnedPolicy(ABC):
         self.config = config or self.Config()  # pyright: ignore[reportCallIssue]
         self._network = _network(self.config.weights, (self.variant, *self.also))
 
+    @classmethod
+    def files_read(cls, config: LearnedConfig) -> list[Path]:
+        """The file of its weights. Raises ConfigError if there is none."""
+        from polyfold_fgpnp.policies.weights import weights_file
+
+        return [weights_file(config.weights)]
+
     def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
         """Pick where the network promises most; ``rng`` is not used.
 
