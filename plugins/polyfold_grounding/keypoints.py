@@ -12,7 +12,7 @@ from pydantic import Field
 from polyfold.geometry import FoldLine
 from polyfold.polygon import Template
 from polyfold.types import Observation, Scene
-from polyfold_grounding.evidence import Evidence
+from polyfold_grounding.fitting.evidence import Evidence
 from polyfold_grounding.polygon import PolygonGrounding
 
 __all__ = ["KeypointsGrounding"]
@@ -66,7 +66,7 @@ class KeypointsGrounding:
         self, template: Template, evidence: Evidence
     ) -> tuple[Mapping[str, Sequence[int]], float, tuple[str, ...]]:
         """Named points [px], the fit's Chamfer distance [px] and its notes."""
-        from polyfold_grounding.tracking import first_model  # imports numba
+        from polyfold_grounding.fitting.tracking import first_model  # imports numba
 
         fitted = first_model(template, evidence, self.config.rotations, self.config.optimizer)
         vertices = dict(zip(fitted.model.names, fitted.model.rest, strict=True))

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.geometry import FoldLine
 from polyfold.polygon import FoldedModel, Template
 from polyfold.types import Observation, Scene
-from polyfold_grounding.evidence import Evidence
+from polyfold_grounding.fitting.evidence import Evidence
 
 __all__ = ["PolygonGrounding"]
 
@@ -57,7 +57,7 @@ class PolygonGrounding:
         Raises:
             GroundingError: if too little cloth is visible.
         """
-        from polyfold_grounding.tracking import first_model, next_model  # imports numba
+        from polyfold_grounding.fitting.tracking import first_model, next_model  # imports numba
 
         evidence = Evidence.of(mask)
         if previous is None or previous.model is None:

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from polyfold.errors import PlanError
 from polyfold.geometry import FoldLine, resample
 from polyfold.polygon import FoldedModel
-from polyfold_grounding import fold_terms
-from polyfold_grounding.evidence import Evidence
-from polyfold_grounding.levenberg_marquardt import Damping, Terms, minimise
+from polyfold_grounding.fitting import fold_terms
+from polyfold_grounding.fitting.evidence import Evidence
+from polyfold_grounding.fitting.levenberg_marquardt import Damping, Terms, minimise
 
 __all__ = ["Refit", "Silhouette", "refit_fold", "register"]
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from polyfold_grounding.contour_terms import field_at
+from polyfold_grounding.fitting.contour_terms import field_at
 
 __all__ = ["fold_normal_equations", "folded_boundary"]
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.polygon import Generator, Template
-from polyfold_grounding import contour_terms
-from polyfold_grounding.evidence import Evidence
-from polyfold_grounding.levenberg_marquardt import Damping, Terms, minimise
+from polyfold_grounding.fitting import contour_terms
+from polyfold_grounding.fitting.evidence import Evidence
+from polyfold_grounding.fitting.levenberg_marquardt import Damping, Terms, minimise
 
 __all__ = ["Energy", "FreeVertices", "minimise_energy"]
 

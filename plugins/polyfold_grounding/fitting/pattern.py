@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.polygon import Generator, Template
-from polyfold_grounding.energy import Energy, FreeVertices
-from polyfold_grounding.evidence import Evidence
-from polyfold_grounding.flat import FlatFit, spread_starts
+from polyfold_grounding.fitting.energy import Energy, FreeVertices
+from polyfold_grounding.fitting.evidence import Evidence
+from polyfold_grounding.fitting.flat import FlatFit, spread_starts
 
 __all__ = ["fit_flat_by_pattern", "pattern_search"]
 
@@ -22,7 +22,7 @@ _LAST_STEP = 0.15
 
 
 def fit_flat_by_pattern(template: Template, evidence: Evidence, rotations: int = 24) -> list[FlatFit]:
-    """Fit the template at any rotation with the stages of :func:`polyfold_grounding.flat.fit_flat`."""
+    """Fit the template at any rotation with the stages of :func:`polyfold_grounding.fitting.flat.fit_flat`."""
     energy = Energy(template, evidence, 6.0)
     symmetric = []
     for start in spread_starts(template, evidence, rotations):

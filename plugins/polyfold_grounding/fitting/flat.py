@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from polyfold.geometry import polygon_area, rotate
 from polyfold.polygon import Template
-from polyfold_grounding.energy import Energy, FreeVertices, minimise_energy
-from polyfold_grounding.evidence import Evidence
+from polyfold_grounding.fitting.energy import Energy, FreeVertices, minimise_energy
+from polyfold_grounding.fitting.evidence import Evidence
 
 __all__ = ["FlatFit", "Start", "fit_flat", "spread_starts"]
 

@@ -12,10 +12,10 @@ from polyfold.errors import PlanError
 from polyfold.garments import name_by_pose
 from polyfold.geometry import FoldLine, chamfer, resample
 from polyfold.polygon import FoldedModel, Template
-from polyfold_grounding.evidence import Evidence
-from polyfold_grounding.flat import fit_flat
-from polyfold_grounding.pattern import fit_flat_by_pattern
-from polyfold_grounding.refit import Refit, Silhouette, refit_fold, register
+from polyfold_grounding.fitting.evidence import Evidence
+from polyfold_grounding.fitting.flat import fit_flat
+from polyfold_grounding.fitting.pattern import fit_flat_by_pattern
+from polyfold_grounding.fitting.refit import Refit, Silhouette, refit_fold, register
 
 __all__ = ["Tracked", "first_model", "next_model"]
 
