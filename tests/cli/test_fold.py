@@ -28,7 +28,7 @@ def test_a_sentence_folds_a_t_shirt_into_a_block_and_leaves_its_pictures(polyfol
 def test_json_is_one_object_with_everything_in_it(polyfold):
     result = polyfold("fold", "fold the square in half", "--garment", "square", "--json", *COARSE)
     episode = json.loads(result.out)
-    assert {"instruction", "garment", "seed", "subgoals", "steps", "fidelity", "out"} <= set(episode)
+    assert {"instruction", "garment", "pose_seed", "subgoals", "steps", "fidelity", "out"} <= set(episode)
     (step,) = episode["steps"]
     assert {"fold_line", "picks", "places", "seconds"} <= set(step)
     assert {"grounding", "language", "policy", "execution"} == set(step["seconds"])
