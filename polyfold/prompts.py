@@ -36,7 +36,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from polyfold.errors import ConfigError
+from polyfold.errors import ConfigError, did_you_mean
 from polyfold.types import Message
 
 __all__ = ["Example", "Prompt", "load_prompt", "prompt_folders", "prompt_names"]
@@ -156,8 +156,8 @@ def load_prompt(role: str, version: str = "v1", folders: Sequence[Path] = ()) ->
         path = Path(folder) / role / f"{version}.md"
         if path.is_file():
             return _read(path, path.stat().st_mtime_ns)
-    known = ", ".join(prompt_names(folders)) or "none"
-    raise ConfigError(f"there is no prompt {role}@{version}; known are: {known}")
+    name = f"{role}@{version}"
+    raise ConfigError(f"there is no prompt {name}; {did_you_mean(name, prompt_names(folders))}")
 
 
 def prompt_names(folders: Sequence[Path] = ()) -> list[str]:

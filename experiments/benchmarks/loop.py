@@ -1,4 +1,4 @@
-"""The whole loop on unseen garments: ``python -m polyfold.benchmark.loop``.
+"""Measure the whole loop on unseen garments: ``python -m experiments.benchmarks.loop``.
 
 Four standard jobs on the evaluation garments (seeds 0 and up), from a sentence to the final picture, judged against
 the ideal along lines from ground-truth keypoints; the agents ``noop`` and ``random`` beside the method. The run
@@ -8,15 +8,16 @@ directory can be killed and resumed; running again does only what is missing and
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from tqdm import tqdm
 
+from polyfold.api import attempt, garment
 from polyfold.config import Experiment
-from polyfold.logs import RunDirectory
+from polyfold.logs import FoldRecord, KeyedRecord, RunDirectory, fold_record
 
 
 @dataclass(frozen=True)
@@ -56,9 +57,21 @@ JOBS = (
 AGENTS = ("polyfold", "noop", "random")
 
 
+class JobRecord(KeyedRecord, FoldRecord):
+    """One episode.
+
+    Attributes:
+        job: name of the job.
+        good: IoU that counts as well folded.
+    """
+
+    job: str
+    good: float
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Run what is missing and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description="Measure the whole loop on unseen garments.")
     parser.add_argument("--n", type=int, default=20, help="garments per job (default: 20)")
     parser.add_argument("--first-seed", type=int, default=0, help="0 for the evaluation garments; develop from 2000")
     parser.add_argument("--agent", action="append", choices=AGENTS, help="only this agent; may be repeated")
@@ -67,49 +80,48 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("runs/benchmark-loop"), help="run directory, resumed")
     chosen = parser.parse_args(arguments)
     jobs = [job for job in JOBS if chosen.job is None or job.task in chosen.job]
-    agents = chosen.agent or list(AGENTS)
-    run = RunDirectory(chosen.out, {"benchmark": "loop", "policy": chosen.policy})
+    agents = tuple(chosen.agent or AGENTS)
+    run = RunDirectory(chosen.out, {"benchmark": "loop", "policy": chosen.policy}, JobRecord)
     _complete(run, jobs, agents, range(chosen.first_seed, chosen.first_seed + chosen.n), chosen.policy)
     wanted = {_key(job, agent, chosen.first_seed + i) for job in jobs for agent in agents for i in range(chosen.n)}
-    print(table([record for key, record in run.episodes().items() if key in wanted]))
+    print(table([record for key, record in run.records().items() if key in wanted]))
 
 
 def _key(job: Job, agent: str, seed: int) -> str:
     return f"{job.task}/{agent}/{seed}"
 
 
-def _complete(run: RunDirectory, jobs: list[Job], agents: list[str], seeds: range, policy: str) -> None:
+def _complete(
+    run: RunDirectory[JobRecord], jobs: Sequence[Job], agents: Sequence[str], seeds: Iterable[int], policy: str
+) -> None:
     """Run the episodes that the directory does not hold yet."""
-    from tqdm import tqdm
-
-    done = run.episodes()
+    done = run.records()
     missing = [
         (job, agent, seed) for seed in seeds for job in jobs for agent in agents if _key(job, agent, seed) not in done
     ]
     for job, agent, seed in tqdm(missing, desc="episodes", unit="episode", disable=not missing):
-        run.append(_key(job, agent, seed), _episode(job, agent, seed, policy))
+        run.append(_episode(job, agent, seed, policy))
 
 
-def _episode(job: Job, agent: str, seed: int, policy: str) -> dict[str, Any]:
-    from polyfold.api import attempt, garment
-
+def _episode(job: Job, agent: str, seed: int, policy: str) -> JobRecord:
     experiment = Experiment.of(agent=agent, policy=policy)
     episode = attempt(job.instruction, garment(job.garment, seed=seed), seed, experiment, task=job.task)
-    return {"job": job.name, "good": job.good, "agent": agent, **episode.summary()}
+    return JobRecord(key=_key(job, agent, seed), job=job.name, good=job.good, **dict(fold_record(episode)))
 
 
-def table(records: list[dict[str, Any]]) -> str:
+def table(records: Sequence[JobRecord]) -> str:
     """The results as a markdown table, a row per job and agent."""
     lines = [
         "| job | agent | n | IoU, mean | lowest | good | moved-part error, mean [mm] | failures | seconds an episode |",
         "|---|---|---|---|---|---|---|---|---|",
     ]
     for job, agent, rows in _groups(records):
-        iou = np.array([row["fidelity"]["iou"] for row in rows])
-        error = np.array([row["fidelity"]["moved_part_error_mm"] for row in rows], float)
-        good = rows[0]["good"]
-        failures = sum(row["failure"] is not None for row in rows)
-        seconds = np.mean([sum(row["seconds"].values()) for row in rows])
+        judged = [row.fidelity for row in rows if row.fidelity is not None]
+        iou = np.array([fidelity.iou for fidelity in judged])
+        error = np.array([fidelity.moved_part_error_mm for fidelity in judged], float)
+        good = rows[0].good
+        failures = sum(row.failure is not None for row in rows)
+        seconds = np.mean([sum(row.seconds.values()) for row in rows])
         lines.append(
             f"| {job} | {agent} | {len(rows)} | {iou.mean():.3f} | {iou.min():.3f} | {(iou >= good).sum()} of "
             f"{len(rows)} at {good:.2f} | {np.nanmean(error):.1f} | {failures} | {seconds:.1f} |"
@@ -117,10 +129,10 @@ def table(records: list[dict[str, Any]]) -> str:
     return "\n".join(lines)
 
 
-def _groups(records: list[dict[str, Any]]) -> Iterator[tuple[str, str, list[dict[str, Any]]]]:
+def _groups(records: Sequence[JobRecord]) -> Iterator[tuple[str, str, list[JobRecord]]]:
     order = {(job.name, agent): None for job in JOBS for agent in AGENTS}
     for job, agent in order:
-        rows = [record for record in records if (record["job"], record["agent"]) == (job, agent)]
+        rows = [record for record in records if (record.job, record.agent) == (job, agent)]
         if rows:
             yield job, agent, rows
 

@@ -1,4 +1,7 @@
-"""What a user waits for: ``python -m polyfold.benchmark.speed``. Seconds of whole commands, start-up included."""
+"""Measure what a user waits for: ``python -m experiments.benchmarks.speed``.
+
+Seconds of whole commands, start-up included.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ COMMANDS = {
 
 def main(arguments: list[str] | None = None) -> None:
     """Time every command after one warm-up and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description="Measure what a user waits for.")
     parser.add_argument("--n", type=int, default=5, help="runs of each command (default: 5)")
     runs = parser.parse_args(arguments).n
     print("| command | n | median [s] | slowest [s] | bound [s] |\n|---|---|---|---|---|")

@@ -23,9 +23,9 @@ _ActionMapLater = Callable[[], ActionMap] | None
 class PolyFoldAgent:
     """Splits the instruction, then per subgoal: ground the picture, plan a fold line, choose picks and places.
 
-    After each fold the next picture tells whether it took effect (:mod:`polyfold.recovery`). Cloth that an arm missed
-    or left astray is carried to where it belongs; in other cases the policy folds what is still left of the line once
-    more. A fold is set right a bounded number of times. The line moves with a garment that was displaced.
+    After each fold the next picture tells whether it took effect (:mod:`polyfold_agent.recovery`). Cloth that an arm
+    missed or left astray is carried to where it belongs; in other cases the policy folds what is still left of the line
+    once more. A fold is set right a bounded number of times. The line moves with a garment that was displaced.
     """
 
     requires: ClassVar[frozenset[str]] = frozenset({"instruction"})
@@ -36,13 +36,19 @@ class PolyFoldAgent:
 
         model_config = ConfigDict(frozen=True, extra="forbid")
 
-        recover: bool = Field(True, description="look whether a fold took effect and repeat it if not")
-        retries: int = Field(3, ge=0, le=10, description="times that one fold is repeated at most")
+        recover: bool = Field(default=True, description="look whether a fold took effect and repeat it if not")
+        retries: int = Field(default=3, ge=0, le=10, description="times that one fold is repeated at most")
         remaining: float = Field(
-            0.25, gt=0, lt=1, description="share of the flap's depth that, still left of the line, means a failed fold"
+            default=0.25,
+            gt=0,
+            lt=1,
+            description="share of the flap's depth that, still left of the line, means a failed fold",
         )
         astray: float = Field(
-            0.22, gt=0, lt=1, description="share of the flap's depth by which cloth beyond the expected outline does"
+            default=0.22,
+            gt=0,
+            lt=1,
+            description="share of the flap's depth by which cloth beyond the expected outline does",
         )
 
     def __init__(

@@ -27,5 +27,5 @@ def register_commands(register):
     register(
         "collect", "polyfold_fgpnp.data.collect:Collect", "fold at random in simulation and record how it came out"
     )
-    register("train", "polyfold_fgpnp.training.train:Train", "learn a value network from random folds")
+    register("train", "polyfold_fgpnp.training.command:Train", "learn a value network from random folds")
     register("maps", "polyfold_fgpnp.studies.maps:Maps", "draw learned spatial action maps over garments")

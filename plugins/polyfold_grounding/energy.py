@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from polyfold.polygon import Generator, Template
 from polyfold_grounding import contour_terms
 from polyfold_grounding.evidence import Evidence
+from polyfold_grounding.levenberg_marquardt import Damping, Terms, minimise
 
-__all__ = ["Energy", "FreeVertices", "levenberg_marquardt"]
+__all__ = ["Energy", "FreeVertices", "minimise_energy"]
 
 Floats = NDArray[np.float64]
 
@@ -20,6 +21,8 @@ _SAMPLES = 300
 
 _WEIGHT = 30.0
 """How much a mean square distance of 1 px (at scale 1) weighs against one σ of a penalty."""
+
+_DAMPING = Damping(most=1e7, share=1e-6, least=1e-12)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,34 +101,17 @@ class FreeVertices:
         return np.eye(len(parameters)).reshape(-1, 2, len(parameters))
 
 
-def levenberg_marquardt(
-    energy: Energy, generator: Generator, vertices: Floats, iterations: int, tolerance: float = 1e-3
-) -> tuple[Floats, float]:
-    """Minimise from the generator's polygon closest to ``vertices``, shape (V, 2).
+def minimise_energy(energy: Energy, generator: Generator, vertices: Floats, iterations: int) -> tuple[Floats, float]:
+    """Minimise from the generator's polygon closest to ``vertices`` [px], shape (V, 2).
 
     Returns:
-        The vertices found, shape (V, 2), and their energy.
+        The vertices found [px], shape (V, 2), and their energy.
     """
-    parameters = generator.parameters(vertices)
-    vertices = generator.vertices(parameters)
-    cost, gradient, hessian = energy.normal_equations(vertices)
-    damping = 1e-2
-    for _ in range(iterations):
+
+    def terms(parameters: Floats) -> Terms:
+        cost, gradient, hessian = energy.normal_equations(generator.vertices(parameters))
         jacobian = generator.jacobian(parameters).reshape(-1, len(parameters))
-        slope, curvature = jacobian.T @ gradient, jacobian.T @ hessian @ jacobian
-        scale = np.diag(curvature) + 1e-6 * np.trace(curvature) / len(slope) + 1e-12
-        step = -np.linalg.solve(curvature + np.diag(damping * scale), slope)
-        trial = generator.vertices(parameters + step)
-        result = energy.normal_equations(trial)
-        if result[0] < cost:
-            gain = cost - result[0]
-            parameters, vertices = parameters + step, trial
-            cost, gradient, hessian = result
-            damping = max(damping / 4, 1e-7)
-            if gain < tolerance * max(cost, 1.0):
-                break
-        else:
-            damping *= 6
-            if damping > 1e7:
-                break
-    return vertices, cost
+        return Terms(cost, jacobian.T @ gradient, jacobian.T @ hessian @ jacobian)
+
+    parameters, found = minimise(terms, generator.parameters(vertices), iterations, _DAMPING)
+    return generator.vertices(parameters), found.cost

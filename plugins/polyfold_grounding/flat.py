@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from polyfold.geometry import polygon_area, rotate
 from polyfold.polygon import Template
-from polyfold_grounding.energy import Energy, FreeVertices, levenberg_marquardt
+from polyfold_grounding.energy import Energy, FreeVertices, minimise_energy
 from polyfold_grounding.evidence import Evidence
 
 __all__ = ["FlatFit", "Start", "fit_flat", "spread_starts"]
@@ -67,13 +67,13 @@ def fit_flat(template: Template, evidence: Evidence, rotations: int = 24) -> lis
     objective, far_sighted = (Energy(template, evidence, delta) for delta in (_DELTA, _FAR_DELTA))
     symmetric = []
     for start in spread_starts(template, evidence, rotations):
-        vertices, energy = levenberg_marquardt(objective, template.generator, start.vertices, 15)
+        vertices, energy = minimise_energy(objective, template.generator, start.vertices, 15)
         symmetric.append(FlatFit(vertices, energy, start.heading))
     symmetric.sort(key=lambda fit: fit.energy)
     free = []
     for fit in symmetric[:_FREE]:
-        vertices, _ = levenberg_marquardt(far_sighted, FreeVertices(), fit.vertices, 40)
-        vertices, energy = levenberg_marquardt(objective, FreeVertices(), vertices, 40)
+        vertices, _ = minimise_energy(far_sighted, FreeVertices(), fit.vertices, 40)
+        vertices, energy = minimise_energy(objective, FreeVertices(), vertices, 40)
         free.append(FlatFit(on_contour(template, vertices, evidence), energy, fit.heading))
     return sorted(free, key=lambda fit: fit.energy)
 

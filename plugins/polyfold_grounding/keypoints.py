@@ -12,6 +12,7 @@ from pydantic import Field
 from polyfold.geometry import FoldLine
 from polyfold.polygon import Template
 from polyfold.types import Observation, Scene
+from polyfold_grounding.evidence import Evidence
 from polyfold_grounding.polygon import PolygonGrounding
 
 __all__ = ["KeypointsGrounding"]
@@ -29,7 +30,7 @@ class KeypointsGrounding:
         """Parameters of the fit to the flat garment, and of the contour's points."""
 
         tolerance_px: float = Field(
-            3.0,
+            default=3.0,
             gt=0.0,
             description="how far the contour may stray from the polygon of its corners [px at 150 x 150 px of cloth]",
         )
@@ -52,8 +53,6 @@ class KeypointsGrounding:
         Raises:
             GroundingError: if too little cloth is visible.
         """
-        from polyfold_grounding.evidence import Evidence
-
         evidence = Evidence.of(mask)
         points, residual = self._contour_corners(evidence), float("nan")
         notes: tuple[str, ...] = ()
@@ -64,16 +63,16 @@ class KeypointsGrounding:
         return Scene(template.kind, size, mask, evidence.contour, None, text, residual, notes, shown=("keypoints",))
 
     def _flat_keypoints(
-        self, template: Template, evidence
+        self, template: Template, evidence: Evidence
     ) -> tuple[Mapping[str, Sequence[int]], float, tuple[str, ...]]:
         """Named points [px], the fit's Chamfer distance [px] and its notes."""
-        from polyfold_grounding.tracking import first_model
+        from polyfold_grounding.tracking import first_model  # imports numba
 
         fitted = first_model(template, evidence, self.config.rotations, self.config.optimizer)
         vertices = dict(zip(fitted.model.names, fitted.model.rest, strict=True))
         return {name: _whole(point) for name, point in vertices.items()}, fitted.chamfer, fitted.notes
 
-    def _contour_corners(self, evidence) -> list[Sequence[int]]:
+    def _contour_corners(self, evidence: Evidence) -> list[Sequence[int]]:
         """Corners of the simplified contour [px], in its order."""
         import cv2
 

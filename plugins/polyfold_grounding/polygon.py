@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.geometry import FoldLine
 from polyfold.polygon import FoldedModel, Template
 from polyfold.types import Observation, Scene
+from polyfold_grounding.evidence import Evidence
 
 __all__ = ["PolygonGrounding"]
 
@@ -31,11 +32,11 @@ class PolygonGrounding:
         model_config = ConfigDict(extra="forbid", frozen=True)
 
         optimizer: Literal["lm", "pattern"] = Field(
-            "lm", description="Levenberg-Marquardt, or Miller's pattern search as in the paper (much slower)"
+            default="lm", description="Levenberg-Marquardt, or Miller's pattern search as in the paper (much slower)"
         )
-        rotations: int = Field(24, ge=4, le=360, description="headings tried in the first picture")
+        rotations: int = Field(default=24, ge=4, le=360, description="headings tried in the first picture")
         displaced_px: float = Field(
-            1.5,
+            default=1.5,
             gt=0.0,
             description="Chamfer distance [px, for a garment of 150 x 150 px] above which all rotations are searched",
         )
@@ -56,8 +57,7 @@ class PolygonGrounding:
         Raises:
             GroundingError: if too little cloth is visible.
         """
-        from polyfold_grounding.evidence import Evidence
-        from polyfold_grounding.tracking import first_model, next_model
+        from polyfold_grounding.tracking import first_model, next_model  # imports numba
 
         evidence = Evidence.of(mask)
         if previous is None or previous.model is None:

@@ -16,6 +16,7 @@ from polyfold.geometry import FoldLine, resample
 from polyfold.polygon import FoldedModel
 from polyfold_grounding import fold_terms
 from polyfold_grounding.evidence import Evidence
+from polyfold_grounding.levenberg_marquardt import Damping, Terms, minimise
 
 __all__ = ["Refit", "Silhouette", "refit_fold", "register"]
 
@@ -25,6 +26,8 @@ _WEIGHT = 3.0
 
 _SIGMAS = np.array([15.0, 15.0, np.radians(8.0), 3.0, np.radians(1.5)])
 """How far a fold usually moves the garment, and misses its line: shift [px at scale 1], turn, offset [px], turn."""
+
+_DAMPING = Damping(most=1e6, floor=1e-9)
 
 _FAR = 1e5
 """Offset of a line that lifts nothing [px]."""
@@ -48,6 +51,17 @@ class Refit:
     chamfer: float
 
 
+@dataclass(frozen=True, eq=False)
+class _FoldTerms(Terms):
+    """The energy around some parameters, and the Chamfer distance [px]."""
+
+    chamfer: float
+
+    def of(self, index: NDArray[np.int64]) -> _FoldTerms:
+        """The same by some of the parameters only."""
+        return _FoldTerms(self.cost, self.gradient[index], self.hessian[np.ix_(index, index)], self.chamfer)
+
+
 class Silhouette:
     """A silhouette before a fold, ready to be folded along a line, moved and compared.
 
@@ -68,10 +82,11 @@ class Silhouette:
         self._boundary = resample(self._outline, 240)
         self.centre = (after.min(0) + after.max(0)) / 2
         if line is None:
-            self._pivot, self._angle = self.centre, 0.0
+            self._pivot, self._angle, self._half = self.centre, 0.0, 0.0
         else:
             start, end = np.array(line.start), np.array(line.end)
             self._pivot, self._angle = (start + end) / 2, float(np.arctan2(*(end - start)[::-1]))
+            self._half = line.length / 2
 
     @property
     def folds(self) -> bool:
@@ -94,26 +109,17 @@ class Silhouette:
             precision[:3] = 0.0
         index = np.array(free)
         precision = np.where(np.isin(np.arange(5), index), precision, 0.0)
-        parameters, damping = start.copy(), 1e-2
-        cost, chamfer, gradient, hessian = self._terms(parameters, precision, delta)
-        for _ in range(iterations):
-            curvature = hessian[np.ix_(index, index)]
-            step = np.zeros(5)
-            damped = curvature + np.diag(damping * np.diag(curvature) + 1e-9)
-            step[index] = -np.linalg.solve(damped, gradient[index])
-            result = self._terms(parameters + step, precision, delta)
-            if result[0] < cost:
-                gain = cost - result[0]
-                parameters = parameters + step
-                cost, chamfer, gradient, hessian = result
-                damping = max(damping / 4, 1e-7)
-                if gain < 1e-3 * max(cost, 1.0):
-                    break
-            else:
-                damping *= 6
-                if damping > 1e6:
-                    break
-        return Refit(parameters, cost, chamfer)
+
+        def completed(chosen: Floats) -> Floats:
+            parameters = start.copy()
+            parameters[index] = chosen
+            return parameters
+
+        def terms(chosen: Floats) -> _FoldTerms:
+            return self._terms(completed(chosen), precision, delta).of(index)
+
+        chosen, found = minimise(terms, start[index], iterations, _DAMPING)
+        return Refit(completed(chosen), found.cost, found.chamfer)
 
     def moved(self, parameters: Floats) -> FoldedModel:
         """The model, folded along the refitted line and moved."""
@@ -132,13 +138,12 @@ class Silhouette:
 
     def line(self, parameters: Floats) -> FoldLine:
         """The refitted line, before the motion."""
-        half = self._line.length / 2
         angle = self._angle + parameters[4]
         along, left = np.array([np.cos(angle), np.sin(angle)]), np.array([np.sin(angle), -np.cos(angle)])
         middle = self._pivot + parameters[3] * left
-        return FoldLine.between(middle - half * along, middle + half * along)
+        return FoldLine.between(middle - self._half * along, middle + self._half * along)
 
-    def _terms(self, parameters: Floats, precision: Floats, delta: float):
+    def _terms(self, parameters: Floats, precision: Floats, delta: float) -> _FoldTerms:
         evidence = self._evidence
         cost, chamfer, gradient, hessian = fold_terms.fold_normal_equations(
             self._boundary,
@@ -154,11 +159,11 @@ class Silhouette:
         )
         weight = _WEIGHT / evidence.scale**2
         prior = precision * parameters
-        return (
+        return _FoldTerms(
             weight * cost + 0.5 * float(prior @ parameters),
-            chamfer,
             weight * gradient + prior,
             weight * hessian + np.diag(precision),
+            chamfer,
         )
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import PlanError
+from polyfold.garments import name_by_pose
 from polyfold.geometry import FoldLine, chamfer, resample
 from polyfold.polygon import FoldedModel, Template
 from polyfold_grounding.evidence import Evidence
 from polyfold_grounding.flat import fit_flat
-from polyfold_grounding.naming import named_by_top
 from polyfold_grounding.pattern import fit_flat_by_pattern
 from polyfold_grounding.refit import Refit, Silhouette, refit_fold, register
 
@@ -53,7 +53,7 @@ def first_model(template: Template, evidence: Evidence, rotations: int, optimize
     """Fit the flat template at any rotation."""
     fit = fit_flat if optimizer == "lm" else fit_flat_by_pattern
     fits = fit(template, evidence, rotations)
-    vertices = named_by_top(fits[0].vertices) if template.cyclic else fits[0].vertices
+    vertices = _named_by_pose(template, fits[0].vertices)
     notes: tuple[str, ...] = ()
     if not template.cyclic and any(
         other.energy < _AS_GOOD * fits[0].energy
@@ -63,6 +63,15 @@ def first_model(template: Template, evidence: Evidence, rotations: int, optimize
         notes = ("ambiguous silhouette: another heading of the garment explains it as well",)
     model = template.model(vertices)
     return Tracked(model, _distance_to(model, evidence), notes)
+
+
+def _named_by_pose(template: Template, vertices: Floats) -> Floats:
+    """Vertices [px], shape (V, 2), in the order of the template's names as they follow from how the garment lies."""
+    if not template.cyclic:
+        return vertices
+    places = {name: place for place, name in enumerate(template.names)}
+    named = name_by_pose(template.names, places, vertices * (1.0, -1.0))
+    return vertices[[named[name] for name in template.names]]
 
 
 def next_model(

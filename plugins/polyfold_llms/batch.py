@@ -18,18 +18,16 @@ from typing import Any
 
 from polyfold.errors import ConfigError
 from polyfold.types import Reply
-from polyfold_llms.cassette import read_lines
-from polyfold_llms.keys import scrubbed
-from polyfold_llms.models import cost_of, find_model
-from polyfold_llms.requests import key_of, request_of
-
-__all__ = ["FORMS", "Missing", "answers_in", "exported", "missing_in", "priced"]
+from polyfold_llms.cassette import recorded_lines
+from polyfold_llms.model_table import accepted_params, call_cost, find_model
+from polyfold_llms.redaction import redacted
+from polyfold_llms.request_keys import normalized_request, request_key
 
 FORMS = ("plain", "openai", "anthropic")
 
 
 @dataclass(frozen=True)
-class Missing:
+class PendingRequest:
     """A request to be answered: what its key is made of, the messages with their pictures, its place."""
 
     key: str
@@ -38,14 +36,14 @@ class Missing:
     place: Mapping[str, Any]
 
 
-def missing_in(path: Path) -> list[Missing]:
+def read_pending(path: Path) -> list[PendingRequest]:
     """The requests collected in a file, each once. Raises ConfigError naming the line that is none."""
-    found: dict[str, Missing] = {}
+    found: dict[str, PendingRequest] = {}
     for number, content in _json_lines(path):
         try:
             full = content["request"]
-            request = request_of(full["model"], full["messages"], full["params"], full["sample"])
-            entry = Missing(key_of(request), request, tuple(full["messages"]), content["place"])
+            request = normalized_request(full["model"], full["messages"], full["params"], full["sample"])
+            entry = PendingRequest(request_key(request), request, tuple(full["messages"]), content["place"])
         except (KeyError, TypeError, AttributeError) as error:
             raise ConfigError(f"{path}, line {number} is no request ({error!r}); collect them anew") from error
         if entry.key != content["key"]:
@@ -54,39 +52,30 @@ def missing_in(path: Path) -> list[Missing]:
     return list(found.values())
 
 
-def exported(missing: Missing, form: str, model: str | None = None) -> dict[str, Any]:
+def export_line(pending: PendingRequest, form: str, model: str | None = None) -> dict[str, Any]:
     """A request as one line of a form.
 
     Args:
-        missing: the request.
+        pending: the request.
         form: one of :data:`FORMS`.
         model: what the service calls the model; by default its name without the route.
     """
-    request = missing.request
+    request = pending.request
     if form == "plain":
-        sent = {"model": model or request["model"], "messages": list(missing.messages), "params": request["params"]}
-        return {"key": missing.key, **sent}
+        sent = {"model": model or request["model"], "messages": list(pending.messages), "params": request["params"]}
+        return {"key": pending.key, **sent}
     name = model or request["model"].rpartition("/")[2]
-    params, reserve = _params(request)
+    params = accepted_params(request["model"], request["params"])
     if form == "openai":
-        if reserve and "max_tokens" in params:
+        known = find_model(request["model"])
+        if known is not None and known.reasoning_reserve and "max_tokens" in params:
             params["max_completion_tokens"] = params.pop("max_tokens")
-        body = {"model": name, "messages": list(missing.messages), **params}
-        return {"custom_id": missing.key, "method": "POST", "url": "/v1/chat/completions", "body": body}
-    system = "\n\n".join(str(m["content"]) for m in missing.messages if m["role"] == "system")
-    turns = [_anthropic_turn(message) for message in missing.messages if message["role"] != "system"]
+        body = {"model": name, "messages": list(pending.messages), **params}
+        return {"custom_id": pending.key, "method": "POST", "url": "/v1/chat/completions", "body": body}
+    system = "\n\n".join(str(m["content"]) for m in pending.messages if m["role"] == "system")
+    turns = [_anthropic_turn(message) for message in pending.messages if message["role"] != "system"]
     body = {"max_tokens": 4096, **params, "model": name, "system": system, "messages": turns}
-    return {"custom_id": missing.key, "params": body}
-
-
-def _params(request: Mapping[str, Any]) -> tuple[dict[str, Any], int]:
-    """The parameters that the model takes, with its reserve for hidden reasoning."""
-    known = find_model(request["model"])
-    params = {name: value for name, value in request["params"].items() if known is None or name not in known.drops}
-    reserve = known.reserve if known else 0
-    if "max_tokens" in params:
-        params["max_tokens"] += reserve
-    return params, reserve
+    return {"custom_id": pending.key, "params": body}
 
 
 def _anthropic_turn(message: Mapping[str, Any]) -> dict[str, Any]:
@@ -104,7 +93,7 @@ def _anthropic_part(part: Mapping[str, Any]) -> dict[str, Any]:
     return {"type": "image", "source": {"type": "base64", "media_type": media, "data": data}}
 
 
-def answers_in(path: Path) -> Iterator[tuple[str, Reply | str]]:
+def read_answers(path: Path) -> Iterator[tuple[str, Reply | str]]:
     """(key, reply) of each line of an answer file of any form; what failed there comes as its reason instead.
 
     Raises:
@@ -127,7 +116,7 @@ def _answer(content: Mapping[str, Any]) -> Reply | str:
     if not isinstance(content["text"], str):
         raise TypeError("text must be a string")
     given = {name: content[name] for name in ("finish", "refusal", "model_served", "usage", "cost") if name in content}
-    return Reply(content["text"], **scrubbed(given), cost_source="answer file" if "cost" in given else "")
+    return Reply(content["text"], **redacted(given), cost_source="answer file" if "cost" in given else "")
 
 
 def _openai_answer(content: Mapping[str, Any]) -> Reply | str:
@@ -159,26 +148,26 @@ def _anthropic_answer(result: Mapping[str, Any]) -> Reply | str:
 
 def _reply(text: Any, finish: Any, refusal: Any, usage: Mapping[str, Any], model: Any) -> Reply:
     counts = {name: int(count) for name, count in usage.items() if isinstance(count, int)}
-    said = scrubbed({"text": text or "", "refusal": refusal, "model_served": str(model or "")})
+    said = redacted({"text": text or "", "refusal": refusal, "model_served": str(model or "")})
     ended = "refusal" if refusal else "length" if finish == "length" else "stop"
     return Reply(**said, finish=ended, usage=counts)
 
 
-def priced(reply: Reply, model: str) -> Reply:
+def with_cost(reply: Reply, model: str) -> Reply:
     """The reply with the cost that the price table gives it, unless it brought one.
 
     Batch services are often cheaper than the table; the source says what it is.
     """
     if reply.cost is not None:
         return reply
-    cost, source = cost_of(model, reply.usage, None)
+    cost, source = call_cost(model, reply.usage, None)
     return replace(reply, cost=cost, cost_source=source)
 
 
 def _json_lines(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     if not path.exists():
         raise ConfigError(f"there is no file {path}; check the path")
-    for number, (line, _) in enumerate(read_lines(path, growing=False), 1):
+    for number, (line, _) in enumerate(recorded_lines(path, growing=False), 1):
         try:
             content = json.loads(line)
         except (ValueError, RecursionError) as error:

@@ -7,9 +7,7 @@ appended, under a lock; a line that a kill cut in half is dropped.
 
 from __future__ import annotations
 
-import fcntl
 import json
-import os
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, fields, replace
@@ -20,11 +18,10 @@ from pathlib import Path
 from typing import Any
 
 from polyfold.errors import ConfigError, LLMError
+from polyfold.logs import JsonLines
 from polyfold.types import Reply
-from polyfold_llms.keys import contains_secret
-from polyfold_llms.requests import VERSION, difference, farthest_numbers, key_of, nearby_key_of
-
-__all__ = ["Cassette", "append_line", "check_no_secret", "models_in", "open_cassette", "read_lines"]
+from polyfold_llms.redaction import contains_secret
+from polyfold_llms.request_keys import REQUEST_VERSION, describe_difference, largest_difference, nearby_key, request_key
 
 LONGEST_LINE = 8_000_000
 LARGEST_FILE = 2_000_000_000
@@ -59,13 +56,13 @@ class Cassette:
                 self._forget()
             if size == self._read:
                 return
-            for line, end in read_lines(self.path, self._read):
+            for line, end in recorded_lines(self.path, self._read):
                 self._keep(self._checked(line, f"{self.path}, line {self._lines + 1}"))
                 self._lines, self._read = self._lines + 1, end
 
     def _keep(self, entry: dict[str, Any]) -> None:
         known = self._entries.setdefault(entry["key"], entry)
-        nearby = nearby_key_of(known["request"], entry["place"])
+        nearby = nearby_key(known["request"], entry["place"])
         if nearby is not None and entry["key"] not in self._nearby.setdefault(nearby, []):
             self._nearby[nearby].append(entry["key"])
 
@@ -90,35 +87,35 @@ class Cassette:
     def find(self, request: Mapping[str, Any]) -> Reply | None:
         """The reply recorded for exactly this request; the first one, if it was recorded twice."""
         self.refresh()
-        entry = self._entries.get(key_of(request))
+        entry = self._entries.get(request_key(request))
         return None if entry is None else _reply(entry, "recorded")
 
     def find_nearby(self, request: Mapping[str, Any], place: Mapping[str, Any], tolerance: float) -> Reply | None:
         """The reply at the same place to a request whose numbers differ by ``tolerance`` at most."""
-        keys = self._nearby.get(nearby_key_of(request, place) or "", [])
-        offs = [(farthest_numbers(self._entries[key]["request"], request), key) for key in keys]
+        keys = self._nearby.get(nearby_key(request, place) or "", [])
+        offs = [(largest_difference(self._entries[key]["request"], request), key) for key in keys]
         off, key = min(offs, default=(float("inf"), ""))
         return _reply(self._entries[key], "recorded nearby") if off <= tolerance else None
 
-    def nearest(self, request: Mapping[str, Any], place: Mapping[str, Any]) -> str:
+    def describe_nearest(self, request: Mapping[str, Any], place: Mapping[str, Any]) -> str:
         """How a request that was not found differs from the recording most like it, in words."""
         if not self._entries:
             return f"{self.path} holds no recording"
         entry = max(self._entries.values(), key=lambda known: _likeness(known, request, place))
-        return f"the nearest recording differs: {difference(entry['request'], request)}"
+        return f"the nearest recording differs: {describe_difference(entry['request'], request)}"
 
     def add_place(self, request: Mapping[str, Any], place: Mapping[str, Any]) -> None:
         """Note that a recorded request was asked at another place too, if that is not known yet."""
-        key, nearby = key_of(request), nearby_key_of(request, place)
+        key, nearby = request_key(request), nearby_key(request, place)
         if nearby is not None and key not in self._nearby.get(nearby, []):
             append_line(self.path, {"key": key, "place": dict(place)})
 
     def add(self, request: Mapping[str, Any], place: Mapping[str, Any], reply: Reply) -> None:
-        """Append a pair; it is on disk when this returns. Raises LLMError if it is too long or holds a secret."""
+        """Append a pair; it is on disk when this returns. Raises LLMError if it holds a secret."""
         content = {name: value for name, value in asdict(reply).items() if name in _REPLY}
         recorded = datetime.now(UTC).date().isoformat()
         entry = {
-            "key": key_of(request),
+            "key": request_key(request),
             "recorded": recorded,
             "request": dict(request),
             "place": dict(place),
@@ -134,7 +131,7 @@ def _likeness(entry: Mapping[str, Any], request: Mapping[str, Any], place: Mappi
     alike = sum(entry["place"].get(name) == value for name, value in place.items())
     same = sum(known[name] == request[name] for name in ("model", "params", "sample"))
     texts = [str(r["messages"][-1].get("content"))[-300:] if r["messages"] else "" for r in (known, request)]
-    return float(alike), float(same), SequenceMatcher(None, *texts).quick_ratio()
+    return float(alike), float(same), SequenceMatcher(None, texts[0], texts[1]).quick_ratio()
 
 
 def _reply(entry: Mapping[str, Any], origin: str) -> Reply:
@@ -145,8 +142,8 @@ def _is_recording(entry: Mapping[str, Any]) -> bool:
     if entry.keys() == {"key", "place"}:
         return False
     request, reply = entry["request"], entry["reply"]
-    sound = request["v"] == VERSION and isinstance(reply["text"], str) and reply.keys() <= _REPLY
-    if not sound or key_of(request) != entry["key"]:
+    sound = request["v"] == REQUEST_VERSION and isinstance(reply["text"], str) and reply.keys() <= _REPLY
+    if not sound or request_key(request) != entry["key"]:
         raise ValueError("it was changed, or made by another version of PolyFold")
     return True
 
@@ -155,34 +152,20 @@ def _no_constants(name: str) -> float:
     raise ValueError(f"{name} is no number")
 
 
-def read_lines(path: Path, begin: int = 0, growing: bool = True) -> Iterator[tuple[bytes, int]]:
-    """The lines of a file from a byte on, each with the byte it ends at.
-
-    Args:
-        path: the file.
-        begin: byte to begin at.
-        growing: leave out a last line without an end, which is being written.
+def recorded_lines(path: Path, begin: int = 0, growing: bool = True) -> Iterator[tuple[bytes, int]]:
+    """The lines of a file of requests or replies, as :meth:`polyfold.logs.JsonLines.lines` gives them.
 
     Raises:
-        ConfigError: for a file or a line that is far too long.
+        ConfigError: if the file or a line is far too long.
     """
-    if path.stat().st_size > LARGEST_FILE:
+    if path.exists() and path.stat().st_size > LARGEST_FILE:
         raise ConfigError(f"{path} is larger than {LARGEST_FILE / 1e9:.0f} GB; split it")
-    with path.open("rb") as file:
-        file.seek(begin)
-        while line := file.readline(LONGEST_LINE + 2):
-            if not line.endswith(b"\n"):
-                if len(line) > LONGEST_LINE:
-                    raise ConfigError(f"{path} has a line of more than {LONGEST_LINE} bytes; it is no cassette")
-                if growing:
-                    return
-            if line.strip():
-                yield line, file.tell()
+    return JsonLines(path, LONGEST_LINE).lines(begin, growing)
 
 
-def check_no_secret(content: Any) -> None:
+def refuse_secrets(content: Any) -> None:
     """Refuse data that holds a secret. Raises LLMError."""
-    if contains_secret(json.dumps(content, ensure_ascii=False)):
+    if contains_secret(json.dumps(content, ensure_ascii=False, allow_nan=False)):
         raise LLMError(
             "the conversation holds a key of this environment, or what looks like one, and is not recorded; take it "
             "out of the instruction or prompt"
@@ -193,38 +176,13 @@ def append_line(path: Path, content: Mapping[str, Any]) -> None:
     """Append data as one line, whole or not at all, whoever else is appending.
 
     Raises:
-        LLMError: if it is too long or holds a secret.
-        ConfigError: if the file can't be written.
+        LLMError: if it holds a secret.
+        ConfigError: if it is too long, or the file can't be written.
     """
-    check_no_secret(content)
-    line = json.dumps(content, ensure_ascii=False, allow_nan=False).encode() + b"\n"
-    if len(line) > LONGEST_LINE:
-        raise LLMError(f"a recording of {len(line)} bytes is too long; use smaller pictures or a shorter prompt")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("a+b") as file:
-            fcntl.flock(file, fcntl.LOCK_EX)
-            _drop_half_written_line(file)
-            file.write(line)
-            file.flush()
-            os.fsync(file.fileno())
-    except OSError as error:
-        raise ConfigError(f"can't write {path} ({error.strerror}); choose another path") from error
+    refuse_secrets(content)
+    JsonLines(path, LONGEST_LINE).append(content)
 
 
-def _drop_half_written_line(file: Any) -> None:
-    """Whoever holds the lock is the only writer, so a last line without an end was left by a kill."""
-    size = file.seek(0, os.SEEK_END)
-    if size == 0:
-        return
-    file.seek(size - 1)
-    if file.read(1) == b"\n":
-        return
-    begin = max(0, size - LONGEST_LINE - 1)
-    file.seek(begin)
-    file.truncate(begin + file.read().rfind(b"\n") + 1)
-
-
-def models_in(entries: Sequence[Mapping[str, Any]]) -> list[str]:
+def recorded_models(entries: Sequence[Mapping[str, Any]]) -> list[str]:
     """The models that entries were recorded from, in order of appearance."""
     return list(dict.fromkeys(entry["request"]["model"] for entry in entries))

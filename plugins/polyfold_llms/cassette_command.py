@@ -19,13 +19,11 @@ from typing import Any
 
 from polyfold.errors import ConfigError, LLMAccessError, LLMError
 from polyfold.types import Reply
-from polyfold_llms.batch import FORMS, Missing, answers_in, exported, missing_in, priced
+from polyfold_llms.batch import FORMS, PendingRequest, export_line, read_answers, read_pending, with_cost
 from polyfold_llms.cassette import Cassette, open_cassette
 
-__all__ = ["Cassettes"]
 
-
-class Cassettes:
+class CassetteCommand:
     """The verb."""
 
     @staticmethod
@@ -106,8 +104,8 @@ def _summary(entries: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def _export(arguments: argparse.Namespace) -> int:
     lines = [
-        json.dumps(exported(m, arguments.form, arguments.model), ensure_ascii=False)
-        for m in missing_in(arguments.requests)
+        json.dumps(export_line(m, arguments.form, arguments.model), ensure_ascii=False)
+        for m in read_pending(arguments.requests)
     ]
     text = "".join(line + "\n" for line in lines)
     if arguments.out is None:
@@ -121,8 +119,8 @@ def _export(arguments: argparse.Namespace) -> int:
 
 def _fill(arguments: argparse.Namespace) -> int:
     cassette = open_cassette(arguments.cassette.resolve())
-    open_requests = {m.key: m for m in missing_in(arguments.requests) if cassette.find(m.request) is None}
-    answers = answers_in(arguments.answers) if arguments.answers else _asked(open_requests, arguments)
+    open_requests = {m.key: m for m in read_pending(arguments.requests) if cassette.find(m.request) is None}
+    answers = read_answers(arguments.answers) if arguments.answers else _asked(open_requests, arguments)
     counts, problems = _add(cassette, open_requests, answers)
     print(
         f"{counts['filled']} filled in, {counts['failed']} failed, {counts['unknown']} answers to nothing that is "
@@ -134,7 +132,7 @@ def _fill(arguments: argparse.Namespace) -> int:
 
 
 def _add(
-    cassette: Cassette, requests: Mapping[str, Missing], answers: Iterator[tuple[str, Reply | str]]
+    cassette: Cassette, requests: Mapping[str, PendingRequest], answers: Iterator[tuple[str, Reply | str]]
 ) -> tuple[Counter[str], list[str]]:
     counts: Counter[str] = Counter()
     problems = []
@@ -146,12 +144,12 @@ def _add(
             problems.append(f"{key[:12]}: {answer}")
         else:
             missing = requests[key]
-            cassette.add(missing.request, missing.place, priced(answer, missing.request["model"]))
+            cassette.add(missing.request, missing.place, with_cost(answer, missing.request["model"]))
             counts["filled"] += 1
     return counts, problems
 
 
-def _asked(requests: Mapping[str, Missing], arguments: argparse.Namespace) -> Iterator[tuple[str, Reply | str]]:
+def _asked(requests: Mapping[str, PendingRequest], arguments: argparse.Namespace) -> Iterator[tuple[str, Reply | str]]:
     """Ask a backend for each request, several at once; what it answers is passed on as it comes."""
     from concurrent.futures import ThreadPoolExecutor, as_completed
 
@@ -163,7 +161,7 @@ def _asked(requests: Mapping[str, Missing], arguments: argparse.Namespace) -> It
     if others:
         raise ConfigError(f"the requests are for {', '.join(sorted(others))}, not for {asked}; fill them with that")
 
-    def ask(missing: Missing) -> Reply | str:
+    def ask(missing: PendingRequest) -> Reply | str:
         try:
             return llm.complete(missing.messages, missing.request["params"])
         except LLMAccessError:

@@ -16,6 +16,6 @@ def register_commands(register):
     """Register the verb."""
     register(
         "cassette",
-        "polyfold_llms.cassette_command:Cassettes",
+        "polyfold_llms.cassette_command:CassetteCommand",
         "look into recorded language models and fill what is missing",
     )

@@ -6,7 +6,7 @@
     polyfold fold "fold it in half" --llm litellm:lm_studio/NAME
 
 A key comes from the environment only and goes to its own provider only: with ``api_base`` none is sent unless
-``key_env`` names it. What faults lead to stands in :mod:`polyfold_llms.transport`; tries, waits and price are ours,
+``key_env`` names it. What faults lead to stands in :mod:`polyfold_llms.retries`; tries, waits and price are ours,
 litellm's own retries, fallbacks and caches stay off.
 """
 
@@ -16,26 +16,30 @@ import copy
 import os
 import re
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import ConfigError, LLMAccessError
 from polyfold.types import Message, Reply
-from polyfold_llms import models
-from polyfold_llms.keys import contains_secret, scrub, scrubbed
-from polyfold_llms.transport import Patience, TransportError, call, header, slot
+from polyfold_llms import model_table
+from polyfold_llms.redaction import contains_secret, redact, redacted
+from polyfold_llms.retries import (
+    CallResult,
+    RetryPolicy,
+    TransportError,
+    call_with_retries,
+    header_value,
+    server_semaphore,
+)
 
-__all__ = ["LiteLLM"]
-
-LONGEST_FAULT = 300
+_LONGEST_FAULT = 300
 _WRAPPING = re.compile(r"^(litellm\.)?[\w. :]*?(\w+Exception - |Error: |Timeout: )(?!.*Exception - )")
-OURS = frozenset(
+_OWN_PARAMS = frozenset(
     {"model", "messages", "api_key", "api_base", "base_url", "timeout", "stream"}
     | {"max_retries", "num_retries", "fallbacks", "caching", "extra_headers", "headers"}
 )
-COUNTED = ("prompt_tokens", "completion_tokens", "total_tokens")
+_COUNTED = ("prompt_tokens", "completion_tokens", "total_tokens")
 
 
 class LiteLLM:
@@ -49,24 +53,30 @@ class LiteLLM:
         model_config = ConfigDict(frozen=True, extra="forbid")
 
         model: str = Field(description="ROUTE/MODEL, for example openrouter/openai/gpt-4o")
-        api_base: str | None = Field(None, description="address of the server, if not the provider's own")
-        key_env: str | None = Field(None, description="environment variable with the key, if not the route's own")
+        api_base: str | None = Field(default=None, description="address of the server, if not the provider's own")
+        key_env: str | None = Field(
+            default=None, description="environment variable with the key, if not the route's own"
+        )
         params: dict[str, Any] = Field(default_factory=dict, description="parameters over the prompt's")
-        unlisted: bool = Field(False, description="use a model that no table lists")
-        timeout_s: float = Field(180.0, gt=0, description="seconds without a byte after which a try is given up")
-        tries: int = Field(4, ge=1, le=4, description="tries for one call")
-        first_wait_s: float = Field(1.0, ge=0, description="wait before the second try; it doubles, with jitter")
-        longest_wait_s: float = Field(60.0, ge=0, le=60, description="cap on waits, those asked for included")
-        concurrency: int = Field(8, ge=1, le=256, description="calls under way at once, per process and server")
+        unlisted: bool = Field(default=False, description="use a model that no table lists")
+        timeout_s: float = Field(
+            default=180.0, gt=0, description="seconds without a byte after which a try is given up"
+        )
+        tries: int = Field(default=4, ge=1, le=4, description="tries for one call")
+        first_wait_s: float = Field(
+            default=1.0, ge=0, description="wait before the second try; it doubles, with jitter"
+        )
+        longest_wait_s: float = Field(default=60.0, ge=0, le=60, description="cap on waits, those asked for included")
+        concurrency: int = Field(default=8, ge=1, le=256, description="calls under way at once, per process and server")
 
     def __init__(self, config: Config) -> None:
         _check_settings(config)
-        models.check_known(config.model, config.api_base, config.unlisted)
+        model_table.check_model_name(config.model, config.api_base, config.unlisted)
         self._config = config
-        self._api_base = config.api_base or models.local_address(config.model)
-        self._key_variable = config.key_env or (None if self._api_base else models.key_variable(config.model))
+        self._api_base = config.api_base or model_table.default_api_base(config.model)
+        self._key_variable = config.key_env or (None if self._api_base else model_table.key_variable(config.model))
         if self._key_variable or not self._api_base:
-            models.check_key(config.model, self._key_variable)
+            model_table.check_api_key(config.model, self._key_variable)
 
     @property
     def model(self) -> str:
@@ -76,7 +86,7 @@ class LiteLLM:
     @staticmethod
     def count_tokens(model: str, messages: Sequence[Message]) -> int:
         """Tokens of a conversation of text by a model's tokenizer, as far as litellm carries it, else OpenAI's."""
-        from polyfold_llms.client import count_tokens
+        from polyfold_llms.litellm_client import count_tokens
 
         return count_tokens(model, messages)
 
@@ -87,30 +97,28 @@ class LiteLLM:
             LLMAccessError: if a person must act first: key, credit, address, model's name, a model without vision.
             LLMError: if the request was refused, or no try brought an answer.
         """
-        from polyfold_llms.client import library
+        from polyfold_llms.litellm_client import load_litellm
 
-        library()  # before the clock starts
+        load_litellm()  # before the clock starts
         self._check_pictures(messages)
         request = self._request(messages, params)
         config = self._config
-        patience = Patience(config.tries, config.first_wait_s, config.longest_wait_s)
-        server = self._api_base or self.model.partition("/")[0]
-        place = partial(slot, server, config.concurrency)
+        policy = RetryPolicy(config.tries, config.first_wait_s, config.longest_wait_s)
+        semaphore = server_semaphore(self._api_base or self.model.partition("/")[0], config.concurrency)
         what = f"the model {self.model!r}" + (f" at {self._api_base}" if self._api_base else "")
-        answer = call(lambda: self._attempt(request), patience, what, place)
-        return self._reply(answer)
+        return self._reply(call_with_retries(lambda: self._attempt(request), policy, what, semaphore))
 
     def _check_pictures(self, messages: Sequence[Message]) -> None:
         if not any(_has_picture(message) for message in messages):
             return
-        known = models.find_model(self.model)
+        known = model_table.find_model(self.model)
         sees = known.vision if known else None
         if sees is None and not self._api_base:
-            from polyfold_llms.client import sees_pictures
+            from polyfold_llms.litellm_client import supports_vision
 
-            sees = sees_pictures(self.model)
+            sees = supports_vision(self.model)
         if sees is False:
-            able = ", ".join(model.id for model in models.models() if model.vision)
+            able = ", ".join(model.id for model in model_table.models() if model.vision)
             raise LLMAccessError(
                 f"the model {self.model!r} does not take pictures, and this grounding or planner sends one; "
                 f"choose a model that does ({able}) or a grounding of text alone, such as polygon"
@@ -118,12 +126,7 @@ class LiteLLM:
 
     def _request(self, messages: Sequence[Message], params: Mapping[str, Any]) -> dict[str, Any]:
         """What litellm is called with, the key aside."""
-        known = models.find_model(self.model)
-        wanted = {**params, **self._config.params}
-        if known:
-            wanted = {name: value for name, value in wanted.items() if name not in known.drops}
-            if known.reserve and "max_tokens" in wanted:
-                wanted["max_tokens"] += known.reserve
+        wanted = model_table.accepted_params(self.model, {**params, **self._config.params})
         return {
             **wanted,
             "model": self.model,
@@ -135,19 +138,19 @@ class LiteLLM:
 
     def _attempt(self, request: Mapping[str, Any]) -> Any:
         """One try. Raises TransportError."""
-        from polyfold_llms.client import library
+        from polyfold_llms.litellm_client import load_litellm
 
-        litellm = library()
-        fault = None
+        litellm = load_litellm()
         try:
             # litellm writes into what it is given.
             response = litellm.completion(**copy.deepcopy(dict(request)), **self._destination())
         except litellm.ContentPolicyViolationError:
             return None
         except Exception as error:
-            fault = _fault(error, litellm)
-        if fault is not None:
-            raise fault
+            response = _fault(error, litellm)
+        # Raised here and not in the handler, so that it does not hold what the provider sent.
+        if isinstance(response, TransportError):
+            raise response
         _check_answered(response)
         return response
 
@@ -160,11 +163,11 @@ class LiteLLM:
             found["api_key"] = "none"
         return found
 
-    def _reply(self, answer: Any) -> Reply:
+    def _reply(self, answer: CallResult[Any]) -> Reply:
         timing = {
             "latency_s": round(answer.latency_s, 4),
             "wall_s": round(answer.wall_s, 4),
-            "attempts": answer.tries,
+            "attempts": answer.attempts,
             "faults": answer.faults,
         }
         response = answer.result
@@ -172,7 +175,7 @@ class LiteLLM:
             return Reply("", finish="refusal", refusal="the provider's content filter barred the request", **timing)
         choice = response.choices[0]
         usage = _usage(response)
-        cost, source = models.cost_of(self.model, usage, getattr(response.usage, "cost", None))
+        cost, source = model_table.call_cost(self.model, usage, getattr(response.usage, "cost", None))
         refusal = _refusal(choice)
         reply = {
             "text": choice.message.content or "",
@@ -181,7 +184,7 @@ class LiteLLM:
             "refusal": refusal,
             "model_served": str(response.model or ""),
         }
-        return Reply(**scrubbed(reply), usage=usage, cost=cost, cost_source=source, **timing)
+        return Reply(**redacted(reply), usage=usage, cost=cost, cost_source=source, **timing)
 
 
 def _check_settings(config: LiteLLM.Config) -> None:
@@ -191,7 +194,7 @@ def _check_settings(config: LiteLLM.Config) -> None:
             "a key stands among the parameters of 'litellm', which are written to disk; take it out, and put it into "
             "the environment (key_env names the variable)"
         )
-    if taken := sorted(OURS & config.params.keys()):
+    if taken := sorted(_OWN_PARAMS & config.params.keys()):
         raise ConfigError(
             f"params of 'litellm' may not set {', '.join(taken)}; use the backend's own parameters (model, api_base, "
             "key_env, timeout_s, tries), and put keys into the environment"
@@ -217,11 +220,11 @@ def _fault(error: Exception, litellm: Any) -> TransportError:
     headers = getattr(error, "litellm_response_headers", None)
     # litellm puts its own classes in front and, for some, a traceback behind.
     said = _WRAPPING.sub("", str(error)).partition("Traceback (most recent call last)")[0]
-    text = " ".join(scrub(said).split())
-    if len(text) > LONGEST_FAULT:
-        text = text[:LONGEST_FAULT] + "..."
+    text = " ".join(redact(said).split())
+    if len(text) > _LONGEST_FAULT:
+        text = text[:_LONGEST_FAULT] + "..."
     named = f"{status} {text}" if status else text
-    return TransportError(status if isinstance(status, int) else None, named, header(headers, "retry-after"))
+    return TransportError(status if isinstance(status, int) else None, named, header_value(headers, "retry-after"))
 
 
 def _check_answered(response: Any) -> None:
@@ -233,7 +236,7 @@ def _check_answered(response: Any) -> None:
         code = error.get("code") if isinstance(error, Mapping) else None
         said = error.get("message") if isinstance(error, Mapping) else error
         raise TransportError(
-            code if isinstance(code, int) else None, f"the provider failed midway: {scrub(str(said))[:200]}"
+            code if isinstance(code, int) else None, f"the provider failed midway: {redact(str(said))[:200]}"
         )
 
 
@@ -251,7 +254,7 @@ def _refusal(choice: Any) -> str | None:
 
 def _usage(response: Any) -> dict[str, int]:
     usage = getattr(response, "usage", None)
-    counts = {name: getattr(usage, name, None) for name in COUNTED}
+    counts = {name: getattr(usage, name, None) for name in _COUNTED}
     details = getattr(usage, "completion_tokens_details", None)
     counts["reasoning_tokens"] = getattr(details, "reasoning_tokens", None)
     return {name: int(count) for name, count in counts.items() if count is not None}

@@ -18,10 +18,8 @@ from polyfold.errors import ConfigError, LLMAccessError, LLMError
 from polyfold.plugins import create
 from polyfold.rollout import request_place
 from polyfold.types import Message, Reply
-from polyfold_llms.cassette import append_line, check_no_secret, models_in, open_cassette
-from polyfold_llms.requests import key_of, request_of
-
-__all__ = ["RecordLLM", "ReplayLLM"]
+from polyfold_llms.cassette import append_line, open_cassette, recorded_models, refuse_secrets
+from polyfold_llms.request_keys import normalized_request, request_key
 
 
 class RecordLLM:
@@ -35,9 +33,9 @@ class RecordLLM:
         model_config = ConfigDict(frozen=True, extra="forbid")
 
         path: Path = Field(description="cassette, JSON lines; appended to")
-        inner: str = Field("rules", description="the backend that is recorded, NAME[:ARGUMENT]")
+        inner: str = Field(default="rules", description="the backend that is recorded, NAME[:ARGUMENT]")
         inner_params: dict[str, Any] = Field(default_factory=dict, description="its parameters")
-        sample: int = Field(0, ge=0, description="number of the answer, to record several to the same request")
+        sample: int = Field(default=0, ge=0, description="number of the answer, to record several to the same request")
 
     def __init__(self, config: Config) -> None:
         self._cassette = open_cassette(config.path.resolve())
@@ -47,12 +45,12 @@ class RecordLLM:
 
     def complete(self, messages: Sequence[Message], params: Mapping[str, Any]) -> Reply:
         """Answer from the cassette or the backend. Raises LLMError as that does, or if a secret would be kept."""
-        request = request_of(self.model, messages, params, self._sample)
+        request = normalized_request(self.model, messages, params, self._sample)
         known = self._cassette.find(request)
         if known is not None:
             self._cassette.add_place(request, request_place())
             return known
-        check_no_secret(request)
+        refuse_secrets(request)
         reply = self._inner.complete(messages, params)
         self._cassette.add(request, request_place(), reply)
         return reply
@@ -69,12 +67,14 @@ class ReplayLLM:
         model_config = ConfigDict(frozen=True, extra="forbid")
 
         path: Path = Field(description="cassette, JSON lines")
-        model: str | None = Field(None, description="the recorded model; may be left out if there is only one")
-        sample: int = Field(0, ge=0, description="number of the answer, if several to the same request were recorded")
-        tolerance: float = Field(
-            3.0, ge=0, description="answer at the same place if the numbers asked differ by this at most [px]"
+        model: str | None = Field(default=None, description="the recorded model; may be left out if there is only one")
+        sample: int = Field(
+            default=0, ge=0, description="number of the answer, if several to the same request were recorded"
         )
-        missing: Path | None = Field(None, description="file that requests the cassette lacks are added to")
+        tolerance: float = Field(
+            default=3.0, ge=0, description="answer at the same place if the numbers asked differ by this at most [px]"
+        )
+        missing: Path | None = Field(default=None, description="file that requests the cassette lacks are added to")
 
     def __init__(self, config: Config) -> None:
         self._config = config
@@ -85,8 +85,13 @@ class ReplayLLM:
         self._cassette = open_cassette(config.path.resolve())
         self.model = config.model or self._only_model()
 
+    @classmethod
+    def files_read(cls, config: Config) -> list[Path]:
+        """The cassette. That of ``record`` does not count: it grows as a run goes on, and what stands in it stays."""
+        return [config.path]
+
     def _only_model(self) -> str:
-        recorded = models_in(self._cassette.entries())
+        recorded = recorded_models(self._cassette.entries())
         if len(recorded) == 1:
             return recorded[0]
         listed = f"it holds {', '.join(recorded)}" if recorded else "it is empty"
@@ -94,16 +99,16 @@ class ReplayLLM:
 
     def complete(self, messages: Sequence[Message], params: Mapping[str, Any]) -> Reply:
         """The recorded answer. Raises LLMError for a request that was not recorded, with the nearest that was."""
-        request, place = request_of(self.model, messages, params, self._config.sample), request_place()
+        request, place = normalized_request(self.model, messages, params, self._config.sample), request_place()
         found = self._cassette.find(request) or self._cassette.find_nearby(request, place, self._config.tolerance)
         if found is not None:
             return found
         advice = "record it (--llm record:PATH), or collect what is missing (--set llm.missing=requests.jsonl)"
         if self._config.missing is not None:
             full = {**request, "messages": [dict(message) for message in messages]}
-            append_line(self._config.missing, {"key": key_of(request), "request": full, "place": dict(place)})
+            append_line(self._config.missing, {"key": request_key(request), "request": full, "place": dict(place)})
             advice = f"it was added to {self._config.missing}: see polyfold cassette --help"
         raise LLMError(
             f"this request to {self.model!r} is not on the cassette {self._config.path}; "
-            f"{self._cassette.nearest(request, place)}; {advice}"
+            f"{self._cassette.describe_nearest(request, place)}; {advice}"
         )

@@ -14,22 +14,24 @@ from polyfold_planning.grammar import check_subgoal
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import answer_object, subgoals_in
 
-__all__ = ["SubgoalsConfig", "split"]
 
-
-class SubgoalsConfig(BaseModel):
+class DecompositionConfig(BaseModel):
     """Parameters of the decomposition."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    subgoals_prompt: str = Field("v1", description="version of the prompt that splits instructions")
-    max_attempts: int | None = Field(None, ge=1, le=10, description="answers asked for; None: as the prompt says")
-    max_subgoals: int = Field(10, ge=1, le=30, description="longest plan accepted")
-    check_grammar: bool = Field(True, description="hold subgoals to the anchored form and known parts")
+    subgoals_prompt: str = Field(default="v1", description="version of the prompt that splits instructions")
+    max_attempts: int | None = Field(
+        default=None, ge=1, le=10, description="answers asked for; None: as the prompt says"
+    )
+    max_subgoals: int = Field(default=10, ge=1, le=30, description="longest plan accepted")
+    check_grammar: bool = Field(default=True, description="hold subgoals to the anchored form and known parts")
     params: dict[str, Any] = Field(default_factory=dict, description="parameters for the model, over the prompt's")
 
 
-def split(instruction: str, template: Template, conversation: Conversation, config: SubgoalsConfig) -> list[Subgoal]:
+def decompose(
+    instruction: str, template: Template, conversation: Conversation, config: DecompositionConfig
+) -> list[Subgoal]:
     """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""
 
     def read(reply: Reply) -> list[Subgoal]:

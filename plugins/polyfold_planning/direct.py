@@ -9,13 +9,11 @@ from pydantic import Field
 from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
 from polyfold.types import Action, Reply, Scene, Subgoal
-from polyfold_planning.decomposition import SubgoalsConfig, split
-from polyfold_planning.motions import check_action
+from polyfold_planning.actions import check_action
+from polyfold_planning.decomposition import DecompositionConfig, decompose
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import action_in, answer_object
-from polyfold_planning.scenes import prompt_about, shown_values
-
-__all__ = ["DirectOneArm", "DirectTwoArms"]
+from polyfold_planning.scene_prompts import prompt_for, prompt_inputs, prompts_for_scenes
 
 
 class _Direct:
@@ -24,17 +22,22 @@ class _Direct:
     role: ClassVar[str]
     arms: ClassVar[tuple[int, ...]]
 
-    class Config(SubgoalsConfig):
+    class Config(DecompositionConfig):
         """Prompt versions and limits."""
 
-        motion_prompt: str = Field("v1", description="version of the prompt that asks for picks and places")
+        motion_prompt: str = Field(default="v1", description="version of the prompt that asks for picks and places")
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
 
+    @classmethod
+    def prompts_read(cls, config: Config) -> list[str]:
+        """The prompts that it may use with these parameters, each as ``role@version``."""
+        return [f"subgoals@{config.subgoals_prompt}", *prompts_for_scenes(cls.role, config.motion_prompt)]
+
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""
-        return split(instruction, template, conversation, self._config)
+        return decompose(instruction, template, conversation, self._config)
 
     def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> Action:
         """Picks and places for a subgoal on the scene as seen now. Raises PlanError if no valid answer came."""
@@ -44,8 +47,8 @@ class _Direct:
             check_action(action, scene)
             return action
 
-        prompt = prompt_about(scene, self.role, self._config.motion_prompt)
-        values = shown_values(scene, prompt, subgoal=subgoal.text)
+        prompt = prompt_for(scene, self.role, self._config.motion_prompt)
+        values = prompt_inputs(scene, prompt, subgoal=subgoal.text)
         attempts = self._config.max_attempts or prompt.max_attempts
         return ask_until_valid(prompt, values, read, conversation, self._config.params, attempts)
 

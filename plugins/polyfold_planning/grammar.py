@@ -7,8 +7,6 @@ import re
 from polyfold.errors import PlanError
 from polyfold.polygon import Template
 
-__all__ = ["check_subgoal"]
-
 _FORM = re.compile(
     r"fold (?P<part>.+?)"
     r"(?: (?:inwards?|outwards?|upwards?|downwards?|leftwards?|rightwards?|up|down|over|in|across|diagonally))*"

@@ -9,14 +9,11 @@ from polyfold.errors import PlanError
 from polyfold.geometry import FoldLine, signed_distance
 from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
-from polyfold.prompts import load_prompt
 from polyfold.types import Reply, Scene, Subgoal
-from polyfold_planning.decomposition import SubgoalsConfig, split
+from polyfold_planning.decomposition import DecompositionConfig, decompose
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import answer_object, fold_line_in
-from polyfold_planning.scenes import prompt_about, shown_values
-
-__all__ = ["HierarchicalPlanner"]
+from polyfold_planning.scene_prompts import prompt_for, prompt_inputs, prompts_for_scenes
 
 MIN_LENGTH = 10.0
 """Shortest fold line with a trustworthy direction [px]."""
@@ -28,24 +25,22 @@ MIN_SHARE = 0.005
 class HierarchicalPlanner:
     """Subgoal decomposition, then one fold line per subgoal, both by prompts and with a repair loop."""
 
-    class Config(SubgoalsConfig):
+    class Config(DecompositionConfig):
         """Prompt versions and limits."""
 
-        fold_line_prompt: str = Field("v1", description="version of the prompt that finds fold lines")
+        fold_line_prompt: str = Field(default="v1", description="version of the prompt that finds fold lines")
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
 
-    @property
-    def prompts(self) -> dict[str, str]:
-        """Prompt ``id@version`` -> sha256, for logs."""
-        roles = {"subgoals": self._config.subgoals_prompt, "fold_line": self._config.fold_line_prompt}
-        prompts = [load_prompt(role, version) for role, version in roles.items()]
-        return {prompt.name: prompt.sha256 for prompt in prompts}
+    @classmethod
+    def prompts_read(cls, config: Config) -> list[str]:
+        """The prompts that it may use with these parameters, each as ``role@version``."""
+        return [f"subgoals@{config.subgoals_prompt}", *prompts_for_scenes("fold_line", config.fold_line_prompt)]
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""
-        return split(instruction, template, conversation, self._config)
+        return decompose(instruction, template, conversation, self._config)
 
     def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine:
         """Find the fold line of a subgoal on the scene as seen now. Raises PlanError if no valid answer came."""
@@ -55,8 +50,8 @@ class HierarchicalPlanner:
             check_fold_line(line, scene)
             return line
 
-        prompt = prompt_about(scene, "fold_line", self._config.fold_line_prompt)
-        values = shown_values(scene, prompt, subgoal=subgoal.text)
+        prompt = prompt_for(scene, "fold_line", self._config.fold_line_prompt)
+        values = prompt_inputs(scene, prompt, subgoal=subgoal.text)
         attempts = self._config.max_attempts or prompt.max_attempts
         return ask_until_valid(prompt, values, read, conversation, self._config.params, attempts)
 

@@ -10,8 +10,6 @@ from polyfold.plugins.interfaces import Conversation
 from polyfold.prompts import Prompt
 from polyfold.types import Reply
 
-__all__ = ["ask_until_valid"]
-
 Answer = TypeVar("Answer")
 
 
@@ -38,22 +36,23 @@ def ask_until_valid(
         PlanError: if no answer could be used; the message holds the last reason.
     """
     messages = prompt.render(**values)
-    for attempt in range(1, max_attempts + 1):
+    attempt = 1
+    while True:
         reply = conversation.ask(prompt.id, messages, {**prompt.params, **params})
         try:
             return read(reply)
-        except PlanError as error:
-            conversation.reject(str(error))
-            if isinstance(error, RefusedError):
+        except PlanError as reason:
+            conversation.reject(str(reason))
+            if isinstance(reason, RefusedError):
                 raise
-            reason = error
-        if attempt < max_attempts:
+            if attempt >= max_attempts:
+                raise PlanError(
+                    f"no usable answer to {prompt.name} after {max_attempts} attempts; the last problem: {reason}; "
+                    "rephrase the instruction or choose another language model"
+                ) from reason
             messages = [
                 *messages,
                 {"role": "assistant", "content": reply.text},
                 {"role": "user", "content": f"That answer can't be used: {reason}. Answer again, in the same format."},
             ]
-    raise PlanError(
-        f"no usable answer to {prompt.name} after {max_attempts} attempts; the last problem: {reason}; "
-        "rephrase the instruction or choose another language model"
-    ) from reason
+        attempt += 1

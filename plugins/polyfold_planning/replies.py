@@ -12,8 +12,6 @@ from polyfold.errors import PlanError, RefusedError
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, Reply
 
-__all__ = ["action_in", "answer_object", "fold_line_in", "says_done", "subgoals_in"]
-
 _FENCE = re.compile(r"```[ \t]*(?:json|JSON)?[ \t]*\n(.*?)```", re.DOTALL)
 MAX_REPLY = 100_000
 
@@ -85,11 +83,14 @@ def fold_line_in(content: Mapping[str, Any]) -> FoldLine:
 
 
 def action_in(content: Mapping[str, Any], arms: Sequence[int]) -> Action:
-    """Picks and places [px]. Raises PlanError if they have another form or number, or a coordinate is not finite.
+    """Picks and places [px], each of shape (arms, 2).
 
     Args:
         content: the answer's object.
         arms: how many picks are allowed.
+
+    Raises:
+        PlanError: if they have another form or number, or a coordinate is not finite.
     """
     counts = " or ".join(str(count) for count in arms)
     form = '{"picks": [{"x": 0, "y": 0}], "places": [{"x": 0, "y": 0}]}'

@@ -10,12 +10,10 @@ from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
 from polyfold.prompts import load_prompt
 from polyfold.types import Action, Reply, Scene, Subgoal
-from polyfold_planning.motions import check_action
+from polyfold_planning.actions import check_action
 from polyfold_planning.repair import ask_until_valid
 from polyfold_planning.replies import action_in, answer_object, says_done
-from polyfold_planning.scenes import shown_values
-
-__all__ = ["ZeroShotVLM"]
+from polyfold_planning.scene_prompts import prompt_inputs
 
 
 class ZeroShotVLM:
@@ -32,14 +30,21 @@ class ZeroShotVLM:
 
         model_config = ConfigDict(frozen=True, extra="forbid")
 
-        prompt: str = Field("v1", description="version of the prompt")
-        max_folds: int = Field(8, ge=1, le=30, description="folds after which it is not asked again")
-        max_attempts: int | None = Field(None, ge=1, le=10, description="answers asked for; None: as the prompt says")
+        prompt: str = Field(default="v1", description="version of the prompt")
+        max_folds: int = Field(default=8, ge=1, le=30, description="folds after which it is not asked again")
+        max_attempts: int | None = Field(
+            default=None, ge=1, le=10, description="answers asked for; None: as the prompt says"
+        )
         params: dict[str, Any] = Field(default_factory=dict, description="parameters for the model, over the prompt's")
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
         self._done: list[dict[str, Any]] = []
+
+    @classmethod
+    def prompts_read(cls, config: Config) -> list[str]:
+        """The prompt that it uses with these parameters, as ``role@version``."""
+        return [f"zero_shot@{config.prompt}"]
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """The instruction as it is."""
@@ -65,7 +70,7 @@ class ZeroShotVLM:
         if len(self._done) >= self._config.max_folds:
             return None
         prompt = load_prompt("zero_shot", self._config.prompt)
-        values = shown_values(scene, prompt, instruction=subgoal.text, folds=self._done, size=_size(scene))
+        values = prompt_inputs(scene, prompt, instruction=subgoal.text, folds=self._done, size=_size(scene))
         attempts = self._config.max_attempts or prompt.max_attempts
         action = ask_until_valid(prompt, values, read, conversation, self._config.params, attempts)
         if action is not None:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from polyfold.geometry import FoldLine
 from polyfold.types import Message, Reply
+from polyfold_rules.messages import Question, read_messages
 from polyfold_rules.shapes.folds import say
-from polyfold_rules.shapes.messages import Question, read_messages
 from polyfold_rules.shapes.parts import Garment, NotUnderstoodError
 
 if TYPE_CHECKING:

@@ -13,8 +13,6 @@ from polyfold.garments import Garment
 from polyfold.plugins import create
 from polyfold.types import Action, Observation, SimState
 
-__all__ = ["FaultySimulator"]
-
 
 class FaultySimulator:
     """Runs another simulator; grasps miss, cloth slips from the grippers, the garment is displaced between folds."""
@@ -24,12 +22,16 @@ class FaultySimulator:
 
         model_config = ConfigDict(frozen=True, extra="forbid")
 
-        inner: str = Field("xpbd", description="the simulator that faults are injected into")
-        miss: float = Field(0.0, ge=0, le=1, description="probability that a grasp takes no cloth, per arm")
-        slip: float = Field(0.0, ge=0, le=1, description="probability that the cloth is dropped on the way, per fold")
-        displace: float = Field(0.0, ge=0, le=1, description="probability that the garment is moved after a fold")
-        shift_m: float = Field(0.03, ge=0, description="largest displacement [m]")
-        turn_deg: float = Field(10.0, ge=0, description="largest turn of a displaced garment [deg]")
+        inner: str = Field(default="xpbd", description="the simulator that faults are injected into")
+        miss: float = Field(default=0.0, ge=0, le=1, description="probability that a grasp takes no cloth, per arm")
+        slip: float = Field(
+            default=0.0, ge=0, le=1, description="probability that the cloth is dropped on the way, per fold"
+        )
+        displace: float = Field(
+            default=0.0, ge=0, le=1, description="probability that the garment is moved after a fold"
+        )
+        shift_m: float = Field(default=0.03, ge=0, description="largest displacement [m]")
+        turn_deg: float = Field(default=10.0, ge=0, description="largest turn of a displaced garment [deg]")
 
     @classmethod
     def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:

@@ -42,7 +42,7 @@ def register_agents(register):
 def register_metrics(register):
     """Register the metrics."""
     register("mppe", "polyfold_standard.metrics:MPPE", "mean particle position error [mm]")
-    register("miou", "polyfold_standard.metrics:MIoU", "IoU of the silhouettes")
+    register("miou", "polyfold_standard.metrics:IoU", "IoU of the silhouettes")
     register("moved-part", "polyfold_standard.metrics:MovedPartError", "mean error of what the reference moved [mm]")
 
 

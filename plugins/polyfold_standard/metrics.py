@@ -12,8 +12,6 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.geometry import iou, rotate, turn_onto
 from polyfold.types import Outcome
 
-__all__ = ["MPPE", "MIoU", "MovedPartError"]
-
 Floats = NDArray[np.float64]
 
 
@@ -22,7 +20,7 @@ class _Alignable(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    align: bool = Field(False, description="move and turn the result rigidly onto the reference first")
+    align: bool = Field(default=False, description="move and turn the result rigidly onto the reference first")
 
 
 class MPPE:
@@ -44,8 +42,8 @@ class MPPE:
         return min(float(_errors(result, reference, self._align).mean()) for reference in references)
 
 
-class MIoU:
-    """IoU of the silhouettes as the camera sees them, best of the references."""
+class IoU:
+    """IoU of the silhouettes as the camera sees them, best of the references (mIoU: its mean over episodes)."""
 
     label: ClassVar[str] = "mIoU"
     digits: ClassVar[int] = 3
@@ -77,7 +75,9 @@ class MovedPartError:
     class Config(_Alignable):
         """Parameters."""
 
-        moved_mm: float = Field(20.0, gt=0, description="travel in the reference from which a particle counts [mm]")
+        moved_mm: float = Field(
+            default=20.0, gt=0, description="travel in the reference from which a particle counts [mm]"
+        )
 
     def __init__(self, config: Config | None = None) -> None:
         config = config or self.Config()

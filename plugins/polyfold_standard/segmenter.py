@@ -10,8 +10,6 @@ from polyfold.errors import GarmentError, GroundingError
 from polyfold.garments import find_cloth
 from polyfold.types import Observation
 
-__all__ = ["ColourThreshold"]
-
 
 class ColourThreshold:
     """Thresholds the colour distance from the table, whose colour is read off the image's border."""
@@ -21,8 +19,8 @@ class ColourThreshold:
 
         model_config = ConfigDict(frozen=True, extra="forbid")
 
-        threshold: float = Field(25.0, gt=0, le=441, description="colour distance from the table, RGB units")
-        smallest: float = Field(0.002, ge=0, lt=1, description="share of the image that the cloth must cover")
+        threshold: float = Field(default=25.0, gt=0, le=441, description="colour distance from the table, RGB units")
+        smallest: float = Field(default=0.002, ge=0, lt=1, description="share of the image that the cloth must cover")
 
     def __init__(self, config: Config) -> None:
         self._config = config

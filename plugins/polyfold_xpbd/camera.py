@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from polyfold.geometry import Camera
 from polyfold.types import Observation
 
-__all__ = ["TABLE", "take_picture"]
-
 TABLE = (236, 236, 232)
 """Colour of the table, RGB."""
 SAMPLES = 2

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from polyfold.geometry import Camera
 from polyfold.types import Action
 
-__all__ = ["Grasp", "Motion", "plan_motion", "take_hold"]
-
 Floats = NDArray[np.float32]
 
 REACH = 0.015

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from polyfold.garments import Mesh
 
-__all__ = ["ClothModel", "build_model"]
-
 GRAVITY = 9.81
 
 
@@ -114,9 +112,9 @@ def _exclusions(
     mesh: Mesh, edges: NDArray[np.int64], rest: NDArray[np.float64], edge_length: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Neighbours along edges, and neighbours in the sheet that the mesh puts closer than a contact disc."""
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
-    close = cKDTree(rest).query_pairs(0.95 * edge_length, output_type="ndarray").astype(np.int64)
+    close = KDTree(rest).query_pairs(0.95 * edge_length, output_type="ndarray").astype(np.int64)
     layer, seam = np.asarray(mesh.layer), np.asarray(mesh.seam)
     same_sheet = (layer[close[:, 0]] == layer[close[:, 1]]) | seam[close[:, 0]] | seam[close[:, 1]]
     pairs = np.concatenate([edges, close[same_sheet]])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import SimulationError
-from polyfold.garments import Garment, Mesh
+from polyfold.garments import Garment, Mesh, name_by_pose
 from polyfold.geometry import Camera
 from polyfold.types import Action, Observation, SimState
 
 if TYPE_CHECKING:
     from polyfold_xpbd.solver import Solver
-
-__all__ = ["XpbdSimulator"]
 
 
 class XpbdSimulator:
@@ -34,18 +32,26 @@ class XpbdSimulator:
 
         model_config = ConfigDict(extra="forbid", frozen=True)
 
-        rotation_deg: float = Field(20.0, ge=0.0, le=180.0, description="the pose is turned by up to this angle [deg]")
-        fill: float = Field(0.8, gt=0.1, le=1.0, description="share of the image that the garment's circle fills")
-        thickness: float = Field(0.0035, gt=0.001, le=0.02, description="distance of touching layers [m]")
-        bending_length: float = Field(0.010, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]")
-        table_friction: float = Field(0.8, ge=0.0, le=2.0, description="Coulomb friction, cloth on table")
-        cloth_friction: float = Field(0.6, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
+        rotation_deg: float = Field(
+            default=20.0, ge=0.0, le=180.0, description="the pose is turned by up to this angle [deg]"
+        )
+        fill: float = Field(
+            default=0.8, gt=0.1, le=1.0, description="share of the image that the garment's circle fills"
+        )
+        thickness: float = Field(default=0.0035, gt=0.001, le=0.02, description="distance of touching layers [m]")
+        bending_length: float = Field(
+            default=0.010, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]"
+        )
+        table_friction: float = Field(default=0.8, ge=0.0, le=2.0, description="Coulomb friction, cloth on table")
+        cloth_friction: float = Field(default=0.6, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
         order: int = Field(
-            1, ge=0, description="seed of the order in which particles and contacts are visited; 0 is the mesh's own"
+            default=1,
+            ge=0,
+            description="seed of the order in which particles and contacts are visited; 0 is the mesh's own",
         )
 
     @classmethod
-    def faultless(cls, config: Config) -> tuple[str, dict[str, Any]]:
+    def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:
         """The simulator that references are made in: the same cloth, visited in the usual order."""
         return "xpbd", config.model_dump(exclude_unset=True, exclude={"order"})
 
@@ -70,7 +76,7 @@ class XpbdSimulator:
         self._rank = np.argsort(self._order)
         self._solver = Solver(mesh, ((flat - centre) @ turn)[self._order], self.config)
         self._solver.settle(0.3)
-        self._keypoints = _named_as_seen(garment, self._solver.positions()[self._rank])
+        self._keypoints = name_by_pose(garment.cyclic, garment.keypoints, self._solver.positions()[self._rank])
         self._two_layers = garment.mesh.layers == 2
         self._outside_up = (garment.mesh.panel == 1) | (not self._two_layers)
         return self.observe()
@@ -164,15 +170,3 @@ def _renumbered(mesh: Mesh, order: int) -> tuple[NDArray[np.int64], Mesh]:
     count = len(mesh.vertices)
     numbering = np.arange(count) if order == 0 else np.random.default_rng(order).permutation(count)
     return numbering, mesh.renumbered(numbering)
-
-
-def _named_as_seen(garment: Garment, positions: NDArray[np.float64]) -> Mapping[str, int]:
-    """Keypoint names; those of a ``cyclic`` garment shift so that the edge nearest the image's top is the top."""
-    names = garment.cyclic
-    if not names:
-        return dict(garment.keypoints)
-    indices = [garment.keypoints[name] for name in names]
-    y = positions[indices, 1]
-    highest = int(np.argmax(y + np.roll(y, -1)))
-    shift = highest - 1
-    return {name: indices[(k + shift) % len(names)] for k, name in enumerate(names)}

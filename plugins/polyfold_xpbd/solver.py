@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 from polyfold.garments import Mesh
 from polyfold.geometry import Camera
 from polyfold.types import Action
-from polyfold_xpbd.compiled import DIVERGED, SETTLED, advance, vertex_normals
 from polyfold_xpbd.grasp import plan_motion, take_hold
+from polyfold_xpbd.kernels.loop import DIVERGED, SETTLED, advance
+from polyfold_xpbd.kernels.vectors import vertex_normals
 from polyfold_xpbd.model import ClothModel, build_model
 from polyfold_xpbd.tethers import TetherMap
-
-__all__ = ["Solver"]
 
 DISC_RADIUS = 0.7
 """Radius of a contact disc in edge lengths; above 0.58 discs leave no gap in an even mesh."""

@@ -17,8 +17,6 @@ from polyfold.garments import Mesh
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-__all__ = ["TetherMap"]
-
 DETOUR = 1.04
 """A path along edges and across pairs of triangles is at most this much longer than the straight one."""
 SLACK = 1.002

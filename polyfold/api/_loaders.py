@@ -13,16 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 from polyfold import plugins
 from polyfold.config import Experiment
 from polyfold.errors import GarmentError
-from polyfold.garments import (
-    Garment,
-    Pattern,
-    load_mask,
-    load_obj,
-    load_outline,
-    load_picture,
-    outline_from_photo,
-    twin_from_outline,
-)
+from polyfold.garments import Garment, Pattern
+from polyfold.garments._obj import load_obj
+from polyfold.garments._outline_files import load_mask, load_outline, load_picture, outline_from_photo
+from polyfold.garments._twin import twin_from_outline
 from polyfold.geometry import Camera, contour_of, fill_polygon
 from polyfold.plugins.interfaces import SewnKind
 from polyfold.types import Observation, Scene

@@ -32,7 +32,7 @@ def _list_suites() -> None:
 
 def _list_tasks(name: str, kind: str | None) -> None:
     from polyfold.evaluation import suite
-    from polyfold.tasks import describe
+    from polyfold.tasks._words import describe
 
     found = suite(name)
     for task in found.tasks:

@@ -47,7 +47,11 @@ def validation_problem(error: ValidationError, known: Iterable[str] = (), below:
     if problem["type"] == "extra_forbidden":
         known = list(known)
         return f"has no setting {place!r}; {did_you_mean(place, known) if known else 'remove it'}"
+    if problem["type"] == "missing":
+        return f"has no {place!r}; add it"
     said = problem["msg"].removeprefix("Value error, ")
+    # A model's own check may already say what to do.
+    advises = problem["type"] == "value_error" and ";" in said
     if not place:
-        return f"has values that don't go together: {said}; change them"
-    return f"has a bad value for {place!r}: {said}; change it"
+        return f"can't be used: {said}" if advises else f"has values that don't go together: {said}; change them"
+    return f"has a bad value for {place!r}: {said}{'' if advises else '; change it'}"

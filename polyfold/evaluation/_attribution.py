@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from polyfold.evaluation._references import Reference
 from polyfold.geometry import FoldLine
-from polyfold.tasks import fidelity
+from polyfold.tasks._ideal import fidelity
 from polyfold.types import Episode, SimState, Step
 
 CAUSES = ("infrastructure", "grounding", "subgoal", "fold line", "policy", "execution")

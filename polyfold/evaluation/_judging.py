@@ -11,7 +11,9 @@ from polyfold import plugins
 from polyfold.errors import GroundingError
 from polyfold.evaluation._suites import find_task, known_tasks
 from polyfold.geometry import FoldLine
-from polyfold.tasks import fidelity, fold_lines, recognise
+from polyfold.tasks import fold_lines
+from polyfold.tasks._ideal import fidelity
+from polyfold.tasks._lines import recognise
 from polyfold.types import Episode, Observation
 
 

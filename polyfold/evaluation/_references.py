@@ -19,7 +19,8 @@ from polyfold.logs import fingerprint
 from polyfold.logs._host import processor
 from polyfold.plugins.interfaces import HasReferenceConfig
 from polyfold.rollout import run_episode
-from polyfold.tasks import Task, fold_ideally, fold_lines
+from polyfold.tasks import Task, fold_lines
+from polyfold.tasks._ideal import fold_step_by_step
 from polyfold.types import Outcome, SimState
 
 MOVED = 0.020
@@ -82,7 +83,7 @@ def ideal_reference(task: Task, garment: Garment, flat: SimState) -> Reference:
         flat: the state before the first fold.
     """
     lines = fold_lines(task, flat.keypoint_pixels())
-    folded = [fold_ideally(flat, garment.mesh, lines[: count + 1]) for count in range(len(lines))]
+    folded = fold_step_by_step(flat, garment.mesh, lines)
     after = tuple(replace(flat, positions=ideal.positions) for ideal in folded)
     return Reference(Outcome(flat, after[-1], folded[-1].mask), after)
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Faces = NDArray[np.int64]
+Complex = NDArray[np.complex128]
 
 ROUNDS = 300
 SETTLED = 1e-4  # largest step, relative to the garment's size, at which flattening stops
@@ -96,11 +97,11 @@ def flatten(vertices: Floats, faces: Faces, front: NDArray[np.bool_], right: Flo
         turn = (weights * np.conj(rest_edges) * edges).sum(1)
         turn /= np.maximum(np.abs(turn), 1e-30)
         pull = (weights * rest_edges * turn[:, None]).ravel()
-        target = np.zeros(count, complex)
+        target = np.zeros(count, np.complex128)
         np.add.at(target, i, -pull)
         np.add.at(target, j, pull)
-        moved = solver.solve(np.column_stack([target.real, target.imag]))
-        moved = moved[:, 0] + 1j * moved[:, 1]
+        solution: Floats = np.asarray(solver.solve(np.column_stack([target.real, target.imag])), float)
+        moved = solution[:, 0] + 1j * solution[:, 1]
         moved -= moved[0]
         step = float(np.abs(moved - points).max())
         points = moved
@@ -119,7 +120,7 @@ def _face_neighbours(faces: Faces) -> Faces:
     return np.column_stack([owner[:-1][shared], owner[1:][shared]])
 
 
-def _rest_shapes(vertices: Floats, faces: Faces, front: NDArray[np.bool_], right: Floats, up: Floats) -> NDArray:
+def _rest_shapes(vertices: Floats, faces: Faces, front: NDArray[np.bool_], right: Floats, up: Floats) -> Complex:
     """Each face's shape in the plane, as complex numbers, shape (F, 3); mirrored on the back."""
     a, b, c = vertices[faces].transpose(1, 0, 2)
     along = b - a
@@ -131,10 +132,10 @@ def _rest_shapes(vertices: Floats, faces: Faces, front: NDArray[np.bool_], right
     front_wound = np.cross(b - a, c - a) @ np.cross(right, up)
     sense = np.sign(front_wound[front].sum()) or 1.0
     y = np.where(front, sense * y, -sense * y)
-    return np.column_stack([np.zeros(len(faces)), length, x + 1j * y])
+    return np.column_stack([np.zeros(len(faces), complex), length, x + 1j * y])
 
 
-def _cotangents(rest: NDArray) -> Floats:
+def _cotangents(rest: Complex) -> Floats:
     """Half the cotangent opposite each edge (0-1, 1-2, 2-0), kept positive, shape (F, 3)."""
     opposite = np.roll(rest, 1, axis=1)
     p, q = rest - opposite, np.roll(rest, -1, axis=1) - opposite
@@ -142,7 +143,7 @@ def _cotangents(rest: NDArray) -> Floats:
     return np.clip(0.5 * product.real / np.maximum(np.abs(product.imag), 1e-12), 0.02, 10.0)
 
 
-def _measured(points: NDArray, faces: Faces, rest: NDArray, rest_edges: NDArray) -> Flattened:
+def _measured(points: Complex, faces: Faces, rest: Complex, rest_edges: Complex) -> Flattened:
     lengths = np.abs(np.roll(points[faces], -1, axis=1) - points[faces])
     distortion = lengths / np.abs(rest_edges) - 1.0
     edges = np.sort(np.column_stack([faces.ravel(), np.roll(faces, -1, axis=1).ravel()]), axis=1)
@@ -154,5 +155,5 @@ def _measured(points: NDArray, faces: Faces, rest: NDArray, rest_edges: NDArray)
     return Flattened(np.column_stack([points.real, points.imag]), distortion.ravel()[once], flipped)
 
 
-def _signed_areas(corners: NDArray) -> Floats:
+def _signed_areas(corners: Complex) -> Floats:
     return 0.5 * (np.conj(corners[:, 1] - corners[:, 0]) * (corners[:, 2] - corners[:, 0])).imag

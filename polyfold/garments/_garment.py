@@ -35,7 +35,7 @@ class Mesh:
         return int(self.panel.max()) + 1
 
     def renumbered(self, order: NDArray[np.int64]) -> Mesh:
-        """The same mesh with its vertices in another order, shape (N,): vertex k is what ``order[k]`` was."""
+        """The same mesh with its vertices in another order, int, shape (N,): vertex k is what ``order[k]`` was."""
         number = np.argsort(order).astype(np.int32)
         return Mesh(
             self.vertices[order],
@@ -52,7 +52,8 @@ class Garment:
     """One garment: its mesh, its named ground-truth keypoints and its looks.
 
     Attributes:
-        kind: a registered garment kind, e.g. ``tshirt``; selects the polygon template.
+        kind: a registered garment kind, e.g. ``tshirt``; selects the polygon template. (Elsewhere ``kind`` may mean a
+            kind of component: see :mod:`polyfold.plugins`.)
         name: unique name, e.g. ``tshirt-0007``.
         seed: the seed it was generated from, or None for a file or a twin.
         mesh: the mesh at rest.

@@ -1,4 +1,7 @@
-"""Which corner of a square or rectangle is which, once it lies on the table."""
+"""Which corner of a square or rectangle is which, once it lies on the table.
+
+The simulator names the true keypoints here and the grounding the fitted ones, so the two always agree.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,8 @@ def name_by_pose(cyclic: Sequence[str], keypoints: Mapping[str, int], positions:
         cyclic: the garment's names in polygon order, starting at bottom_left: the second and third bound the top
             edge. With no names nothing is renamed.
         keypoints: keypoint name -> vertex, in any of the cyclic namings.
-        positions: world positions [m] of all vertices, shape (N, 2) or (N, 3); the image's top is +y.
+        positions: positions of all vertices, shape (N, 2) or (N, 3), in any unit with +y towards the image's top:
+            world positions [m], or pixels with their y negated.
 
     Returns:
         Keypoint name -> vertex; names outside ``cyclic`` are kept as they are.

@@ -118,7 +118,7 @@ def _read_mesh(path: Path) -> tuple[Floats, Faces]:
     import trimesh
 
     try:
-        mesh = trimesh.load(path, force="mesh", process=False, maintain_order=True)
+        mesh: Any = trimesh.load(path, force="mesh", process=False, maintain_order=True)
         faces = getattr(mesh, "faces", np.empty((0, 3), int))
     except Exception as error:  # trimesh raises whatever its parsers stumble over
         raise GarmentError(f"the mesh {path} can't be read ({error}); export it again as OBJ") from error
@@ -151,15 +151,14 @@ def _largest_piece(mesh: Any, path: Path) -> Any:
 
 
 def _nearest(vertices: Floats, points: Floats) -> list[int]:
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
-    return [int(index) for index in cKDTree(vertices).query(points)[1]]
+    return [int(index) for index in np.asarray(KDTree(vertices).query(points)[1])]
 
 
 def _frame(places: Mapping[str, Floats], pattern: Pattern, path: Path) -> tuple[Floats, Floats, Floats]:
     """Unit vectors right, up and towards the viewer, as the keypoints say, each of shape (3,)."""
-    up = np.mean([places[name] for name in pattern.top], axis=0)
-    up = up - np.mean([places[name] for name in pattern.bottom], axis=0)
+    up = pattern.up(places)
     pairs = [(name, name.replace("_left", "_right")) for name in pattern.corners if name.endswith("_left")]
     right = np.mean([places[b] - places[a] for a, b in pairs], axis=0)
     size = np.ptp(np.array(list(places.values())), axis=0).max()
@@ -170,7 +169,7 @@ def _frame(places: Mapping[str, Floats], pattern: Pattern, path: Path) -> tuple[
     if np.linalg.norm(right) < 0.05 * size:
         raise GarmentError(f"the keypoints of {path} tell no left from right; correct them")
     right /= np.linalg.norm(right)
-    return right, up, np.cross(right, up)
+    return right, up, np.asarray(np.cross(right, up), float)
 
 
 def _check_flat(distortion: Floats, flipped: float, path: Path) -> None:

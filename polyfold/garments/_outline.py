@@ -57,7 +57,7 @@ def curved_outline(
     """Join named corners by curved edges with softly rounded corners.
 
     Args:
-        corners: name -> position [m], in order around the garment, clockwise seen from above.
+        corners: name -> position [m], shape (2,), in order around the garment, clockwise seen from above.
         edges: (from, to) of neighbours -> the polyline between them [m], both ends included, shape (K, 2), for edges
             that are no simple arcs.
         bulges: (from, to) of neighbours -> how far the edge's middle lies outside the straight edge [m]; negative is

@@ -27,9 +27,8 @@ def load_outline(path: str | Path) -> NDArray[np.float64]:
         GarmentError: if the file can't be read or holds no outline.
     """
     content = _json(Path(path))
-    if isinstance(content, dict):
-        content = content.get("outline", content.get("mask"))
-    polygons = content if _is_nested(content) else [content]
+    found: Any = content.get("outline", content.get("mask")) if isinstance(content, dict) else content
+    polygons = found if _is_nested(found) else [found]
     outlines = [_points(polygon, path) for polygon in polygons]
     return max(outlines, key=lambda outline: abs(polygon_area(outline)))
 
@@ -71,7 +70,7 @@ def outline_from_photo(path: str | Path) -> NDArray[np.float64]:
     height, width = picture.shape[:2]
     scale = min(1.0, WORKING_SIZE / max(height, width))
     size = (max(1, round(width * scale)), max(1, round(height * scale)))
-    smaller = cv2.resize(picture, size, interpolation=cv2.INTER_AREA) if scale < 1.0 else picture
+    smaller = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), np.uint8) if scale < 1.0 else picture
     try:
         outline = contour_of(find_cloth(smaller))
     except GarmentError as error:

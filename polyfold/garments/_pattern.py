@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -28,3 +32,12 @@ class Pattern:
     openings: tuple[tuple[str, str], ...] = ()
     slits: tuple[str, ...] = ()
     cyclic: tuple[str, ...] = ()
+
+    def up(self, places: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+        """From the middle of the bottom to the middle of the top, shape (2,) or (3,); the garment's own up.
+
+        Args:
+            places: keypoint name -> position in any unit, shape (2,) or (3,).
+        """
+        top, bottom = (np.mean([places[name] for name in names], axis=0) for names in (self.top, self.bottom))
+        return top - bottom

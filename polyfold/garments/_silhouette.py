@@ -90,7 +90,7 @@ def _background_plane(x: Any, y: Any, colours: NDArray[np.float64]) -> NDArray[n
     if near.sum() < 0.3 * len(colours):
         raise GarmentError("the picture's border shows no single background colour; use a plain background")
     design = np.column_stack([np.ones(near.sum()), x[near], y[near]])
-    return np.linalg.lstsq(design, colours[near], rcond=None)[0]
+    return np.asarray(np.linalg.lstsq(design, colours[near], rcond=None)[0], float)
 
 
 def _separating_threshold(distance: NDArray[np.float32], noise: float) -> float:

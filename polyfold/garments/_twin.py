@@ -108,8 +108,7 @@ def _complete(keypoints: Mapping[str, ArrayLike], pattern: Pattern) -> Floats:
 def _upright(ring: Floats, corners: Floats, pattern: Pattern, size: float) -> tuple[Floats, Floats]:
     """Turned so that bottom to top points up, and scaled to the size [m]."""
     places = {name: corners[index] for index, name in enumerate(pattern.corners)}
-    up = np.mean([places[name] for name in pattern.top], axis=0)
-    up -= np.mean([places[name] for name in pattern.bottom], axis=0)
+    up = pattern.up(places)
     length = float(np.hypot(*up))
     if length == 0.0:
         raise GarmentError("the top and the bottom of the garment coincide; correct the keypoints")
@@ -225,4 +224,5 @@ def _smoothed(piece: Floats, sigma: float) -> Floats:
     before, after = 2 * piece[0] - piece[reach:0:-1], 2 * piece[-1] - piece[-2 : -reach - 2 : -1]
     kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
     extended = np.vstack([before, piece, after])
-    return np.column_stack([np.convolve(extended[:, axis], kernel / kernel.sum(), "valid") for axis in (0, 1)])
+    columns = [np.convolve(extended[:, axis], kernel / kernel.sum(), "valid") for axis in (0, 1)]
+    return np.asarray(np.column_stack(columns), float)

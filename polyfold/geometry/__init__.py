@@ -5,9 +5,7 @@ from polyfold.geometry._fold_line import FoldLine
 from polyfold.geometry._masks import contour_of, fill_polygon, iou, span_on_mask
 from polyfold.geometry._plane import (
     chamfer,
-    left_of,
     mirror,
-    perpendicular_bisector,
     polygon_area,
     resample,
     rotate,
@@ -22,9 +20,7 @@ __all__ = [
     "contour_of",
     "fill_polygon",
     "iou",
-    "left_of",
     "mirror",
-    "perpendicular_bisector",
     "polygon_area",
     "resample",
     "rotate",

@@ -38,12 +38,20 @@ def signed_distance(points: ArrayLike, start: ArrayLike, end: ArrayLike) -> Poin
 
 
 def left_of(points: ArrayLike, start: ArrayLike, end: ArrayLike) -> NDArray[np.bool_]:
-    """Which points lie strictly to the left of the directed line, shape (...,)."""
+    """Which points [px], shape (..., 2), lie strictly to the left of the directed line, bool, shape (...,)."""
     return signed_distance(points, start, end) > 0.0
 
 
 def mirror(points: ArrayLike, start: ArrayLike, end: ArrayLike) -> Points:
-    """Points reflected across the line through ``start`` and ``end``, shape (..., 2)."""
+    """Points reflected across a line; all coordinates in one unit.
+
+    Args:
+        points: positions, shape (..., 2).
+        start, end: two distinct points on the line, shape (2,).
+
+    Returns:
+        The reflected positions, shape (..., 2).
+    """
     start, end = np.asarray(start, float), np.asarray(end, float)
     along = end - start
     left_normal = np.array([along[1], -along[0]]) / np.hypot(*along)
@@ -52,7 +60,7 @@ def mirror(points: ArrayLike, start: ArrayLike, end: ArrayLike) -> Points:
 
 
 def perpendicular_bisector(pick: ArrayLike, place: ArrayLike) -> tuple[Points, Points]:
-    """Directed line (start, end) that mirrors ``pick`` onto ``place``, with ``pick`` on its left.
+    """Directed line (start, end) that mirrors ``pick`` onto ``place`` [px], with ``pick`` on its left; all shape (2,).
 
     The returned segment is as long as the distance from pick to place and centred between them.
     """
@@ -66,7 +74,16 @@ def perpendicular_bisector(pick: ArrayLike, place: ArrayLike) -> tuple[Points, P
 
 
 def rotate(points: ArrayLike, angle: float, centre: ArrayLike = (0.0, 0.0)) -> Points:
-    """Points turned by ``angle`` [rad] about ``centre``; x towards y is positive (clockwise on screen, y down)."""
+    """Turn points about a centre; all coordinates in one unit.
+
+    Args:
+        points: positions, shape (..., 2).
+        angle: the turn [rad]; x towards y is positive (clockwise on screen, y down).
+        centre: what stays in place, shape (2,).
+
+    Returns:
+        The turned positions, shape (..., 2).
+    """
     c, s = np.cos(angle), np.sin(angle)
     centre = np.asarray(centre, float)
     return (np.asarray(points, float) - centre) @ np.array([[c, s], [-s, c]]) + centre
@@ -78,7 +95,8 @@ def turn_onto(points: ArrayLike, targets: ArrayLike) -> float:
     Least squares after both centroids are laid on each other (Kabsch in the plane; DOI 10.1107/S0567739476001873).
 
     Args:
-        points, targets: shape (N, 2), in the same unit.
+        points: positions, shape (N, 2).
+        targets: where each should come to lie, in the same unit, shape (N, 2).
     """
     points, targets = np.asarray(points, float), np.asarray(targets, float)
     a, b = points - points.mean(axis=0), targets - targets.mean(axis=0)
@@ -86,13 +104,13 @@ def turn_onto(points: ArrayLike, targets: ArrayLike) -> float:
 
 
 def polygon_area(polygon: ArrayLike) -> float:
-    """Signed area of a closed polygon, shape (N, 2); positive when it runs from x towards y."""
+    """Signed area, in the square of its unit, of a closed polygon, shape (N, 2); positive if it runs from x to y."""
     x, y = np.asarray(polygon, float).T
     return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
 
 
 def resample(polyline: ArrayLike, count: int, closed: bool = True) -> Points:
-    """``count`` points spaced evenly by arc length along a polyline, shape (count, 2)."""
+    """``count`` points, shape (count, 2), spaced evenly by arc length along a polyline, shape (N, 2), in its unit."""
     points = np.asarray(polyline, float)
     if closed:
         points = np.vstack([points, points[:1]])
@@ -103,8 +121,16 @@ def resample(polyline: ArrayLike, count: int, closed: bool = True) -> Points:
 
 
 def chamfer(a: ArrayLike, b: ArrayLike) -> float:
-    """Symmetric Chamfer distance ½ D(a, b) + ½ D(b, a), D the mean nearest distance (paper, Sec. III)."""
-    from scipy.spatial import cKDTree
+    """Symmetric Chamfer distance of two sets of points, ½ D(a, b) + ½ D(b, a), D the mean nearest distance.
+
+    Args:
+        a: positions, shape (N, 2).
+        b: positions in the same unit, shape (M, 2).
+
+    Returns:
+        The distance in that unit (paper, Sec. III).
+    """
+    from scipy.spatial import KDTree
 
     a, b = np.asarray(a, float), np.asarray(b, float)
-    return 0.5 * float(cKDTree(b).query(a)[0].mean()) + 0.5 * float(cKDTree(a).query(b)[0].mean())
+    return 0.5 * float(KDTree(b).query(a)[0].mean()) + 0.5 * float(KDTree(a).query(b)[0].mean())

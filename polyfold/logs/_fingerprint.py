@@ -23,6 +23,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment
 from polyfold.plugins import hookspecs
+from polyfold.plugins._traits import UsesComponents
 from polyfold.prompts import load_prompt
 
 CORE = ("geometry", "polygon", "garments", "types", "tasks", "plugins", "rollout", "evaluation", "studies")
@@ -100,7 +101,7 @@ def fingerprint(
     """The fingerprint of experiments.
 
     Args:
-        experiments: what will run; components that they name but do not use count too.
+        experiments: what will run; components that they name but do not use count for nothing.
         also: further components, as (kind, name), for example ``("metrics", "mppe")``.
         commits: whether to ask git for the state of checkouts; :meth:`Fingerprint.digest` needs none.
 
@@ -138,17 +139,22 @@ def _once_each(specs: Iterable[tuple[str, ComponentSpec]]) -> list[tuple[str, Co
 
 
 def _specs(experiment: Experiment) -> Iterator[tuple[str, ComponentSpec]]:
-    """Every component that an experiment names, also as the parameter of another one of its kind."""
-    for field in type(experiment).model_fields:
-        spec = getattr(experiment, field)
-        if not isinstance(spec, ComponentSpec):
-            continue
-        kind = hookspecs.plural(field)
+    """Every component in use, also one that another of its kind names as a parameter, as a fault injector does."""
+    for field in _fields_in_use(experiment):
+        kind, spec = hookspecs.plural(field), getattr(experiment, field)
         yield kind, spec
         known = plugins.names(kind)
         for value in plugins.parameters(kind, spec).values():
             if isinstance(value, str) and value.partition(":")[0] in known:
                 yield kind, ComponentSpec(name=value)
+
+
+def _fields_in_use(experiment: Experiment) -> dict[str, None]:
+    """The agent with what it is made of, its language model if it has one, and what shows and judges its episode."""
+    agent = plugins.component_class("agents", experiment.agent.name.partition(":")[0])
+    asks = ("llm",) if "instruction" in agent.requires else ()
+    uses = agent.uses if isinstance(agent, UsesComponents) else ()
+    return dict.fromkeys(("agent", "simulator", "segmenter", *uses, *asks))
 
 
 def _libraries() -> dict[str, str]:

@@ -3,23 +3,22 @@
 A new kind of garment needs one :class:`Template`; see its docstring for a complete example.
 """
 
-from polyfold.polygon._folded import FoldedModel, VertexState
+from polyfold.polygon._folded import FoldedModel
 from polyfold.polygon._generator import Generator, SymmetricGenerator
-from polyfold.polygon._layers import Facet, fold_facets
-from polyfold.polygon._penalties import Penalty, PenaltySet, angle_range, offset_range, position_range, ratio_range
+from polyfold.polygon._layers import Facet
+from polyfold.polygon._penalties import Penalty, angle_range, offset_range, position_range, ratio_range
 from polyfold.polygon._template import Template
+from polyfold.polygon._vertices import VertexState
 
 __all__ = [
     "Facet",
     "FoldedModel",
     "Generator",
     "Penalty",
-    "PenaltySet",
     "SymmetricGenerator",
     "Template",
     "VertexState",
     "angle_range",
-    "fold_facets",
     "offset_range",
     "position_range",
     "ratio_range",

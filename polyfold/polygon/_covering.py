@@ -1,13 +1,17 @@
-"""Which points a polygon covers, and the silhouette of several polygons."""
+"""Which points polygons cover, how far they overlap, and the silhouette of several polygons."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.errors import GarmentError
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 Floats = NDArray[np.float64]
 
@@ -25,17 +29,50 @@ def inside_depth(point: ArrayLike, polygon: ArrayLike) -> float:
     return distance if (straddles & (crossing > point[0])).sum() % 2 else -distance
 
 
-def silhouette(polygons: Sequence[ArrayLike]) -> Floats:
-    """Largest outer ring of the union of polygons, shape (N, 2), without repetition of its first point."""
+def shapes(polygons: Iterable[Floats]) -> list[BaseGeometry]:
+    """Polygons [px], each of shape (N, 2), as valid shapes: a piece may touch itself where a fold line met a corner."""
     import shapely
 
-    shapes = [shapely.Polygon(p) for p in polygons]
-    # A piece may touch itself where a fold line met a corner.
-    shapes = [shape if shape.is_valid else shapely.make_valid(shape) for shape in shapes]
+    made = [shapely.Polygon(polygon) for polygon in polygons]
+    return [shape if shape.is_valid else shapely.make_valid(shape) for shape in made]
+
+
+def overlap_area(a: Iterable[BaseGeometry], b: Iterable[BaseGeometry]) -> float:
+    """Area [px²] that two sets of shapes share; the shapes of one set don't overlap each other."""
+    b = list(b)
+    return float(sum(one.intersection(other).area for one in a for other in b))
+
+
+def covered_area(covering: Iterable[BaseGeometry]) -> float:
+    """Area [px²] of the union of shapes."""
+    import shapely
+
+    return float(shapely.union_all(list(covering)).area)
+
+
+def silhouette(polygons: Iterable[Floats]) -> Floats:
+    """Largest outer ring [px] of the union of polygons, shape (N, 2), without repetition of its first point."""
+    import shapely
+
     # Snapping to a fine grid keeps nearly coincident edges of stacked layers from confusing the overlay.
-    united = shapely.union_all(shapes, grid_size=1e-3)
-    parts = [part for part in getattr(united, "geoms", [united]) if isinstance(part, shapely.Polygon)]
+    united = shapely.union_all(shapes(polygons), grid_size=1e-3)
+    parts = [part for part in shapely.get_parts(united) if isinstance(part, shapely.Polygon)]
     if not parts or max(part.area for part in parts) <= 0:
         raise GarmentError("the polygon model has no area; its vertices coincide or lie on one line")
     largest = max(parts, key=lambda part: part.area)
     return np.asarray(largest.exterior.coords)[:-1]
+
+
+def solid_parts(polygon: Floats) -> list[Floats]:
+    """Outer rings of the simple polygons that a closed line encloses [px], each of shape (K, 2).
+
+    A simple polygon comes back as it is. One that crosses itself, such as the outline of trousers whose legs overlap,
+    falls into parts.
+    """
+    import shapely
+
+    outline = shapely.Polygon(polygon)
+    if outline.is_valid:
+        return [polygon]
+    found = shapely.get_parts(shapely.get_parts(shapely.make_valid(outline)))
+    return [shapely.get_coordinates(part.exterior)[:-1] for part in found if isinstance(part, shapely.Polygon)]

@@ -16,8 +16,14 @@ _SAME_VERTEX = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
-    """A simple polygon, shape (N, 2), with the names at each corner and a label for the edge that follows it."""
+class LabelledPolygon:
+    """A simple polygon with names at its corners.
+
+    Attributes:
+        points: corners [px], shape (N, 2).
+        names: names at each corner.
+        edges: a label for the edge that follows each corner.
+    """
 
     points: NDArray[np.float64]
     names: tuple[tuple[str, ...], ...]
@@ -36,13 +42,13 @@ class _Crossing:
 
 
 def cut(
-    outline: Outline, distance: NDArray[np.float64], direction: NDArray[np.float64], label: str
-) -> tuple[list[Outline], list[Outline]]:
+    polygon: LabelledPolygon, distance: NDArray[np.float64], direction: NDArray[np.float64], label: str
+) -> tuple[list[LabelledPolygon], list[LabelledPolygon]]:
     """Split along a line.
 
     Args:
-        outline: a simple polygon; it need not be convex and may fall into several pieces.
-        distance: signed distance of its corners from the line, positive on the left, shape (N,).
+        polygon: it need not be convex and may fall into several pieces.
+        distance: signed distance [px] of its corners from the line, positive on the left, shape (N,).
         direction: unit vector along the line, shape (2,).
         label: the label of the new edges along the line.
 
@@ -50,11 +56,11 @@ def cut(
         Pieces on the left and on the right. A named corner on the line is a corner of every piece it touches.
     """
     left = distance > _COINCIDE
-    crossings = _crossings(outline, distance, left, direction)
+    crossings = _crossings(polygon, distance, left, direction)
     if not crossings:
-        return ([outline], []) if left.all() else ([], [outline])
-    partner = _partners(crossings, clockwise=polygon_area(outline.points) > 0)
-    pieces: tuple[list[Outline], list[Outline]] = ([], [])
+        return ([polygon], []) if left.all() else ([], [polygon])
+    partner = _partners(crossings, clockwise=polygon_area(polygon.points) > 0)
+    pieces: tuple[list[LabelledPolygon], list[LabelledPolygon]] = ([], [])
     for begin_left in (True, False):
         # On its way round, a piece follows the polygon from one crossing to the next, then the line to the partner.
         unused = {k for k, c in enumerate(crossings) if c.leaves_left != begin_left}
@@ -64,7 +70,7 @@ def cut(
             while k in unused:
                 unused.discard(k)
                 following = (k + 1) % len(crossings)
-                piece.follow(outline, crossings[k], crossings[following], label)
+                piece.follow(polygon, crossings[k], crossings[following], label)
                 k = partner[following]
             made = piece.finish()
             if made is not None:
@@ -73,7 +79,7 @@ def cut(
 
 
 def _crossings(
-    outline: Outline, distance: NDArray[np.float64], left: NDArray[np.bool_], direction: NDArray[np.float64]
+    polygon: LabelledPolygon, distance: NDArray[np.float64], left: NDArray[np.bool_], direction: NDArray[np.float64]
 ) -> list[_Crossing]:
     found, count = [], len(distance)
     for i in range(count):
@@ -81,10 +87,10 @@ def _crossings(
         if left[i] == left[j]:
             continue
         share = distance[i] / (distance[i] - distance[j])
-        point = outline.points[i] + np.clip(share, 0.0, 1.0) * (outline.points[j] - outline.points[i])
+        point = polygon.points[i] + np.clip(share, 0.0, 1.0) * (polygon.points[j] - polygon.points[i])
         nearest = i if share < 0.5 else j
-        close = np.hypot(*(outline.points[nearest] - point)) < _SAME_VERTEX
-        names = outline.names[nearest] if close else ()
+        close = np.hypot(*(polygon.points[nearest] - point)) < _SAME_VERTEX
+        names = polygon.names[nearest] if close else ()
         found.append(_Crossing(i, point, float(point @ direction), bool(left[i]), names))
     return found
 
@@ -119,17 +125,17 @@ class _Builder:
         self.edges: list[str] = []
         self._shared: list[tuple[NDArray[np.float64], tuple[str, ...]]] = []
 
-    def follow(self, outline: Outline, begin: _Crossing, end: _Crossing, label: str) -> None:
-        count = len(outline.points)
+    def follow(self, polygon: LabelledPolygon, begin: _Crossing, end: _Crossing, label: str) -> None:
+        count = len(polygon.points)
         self._shared += [(crossing.point, crossing.names) for crossing in (begin, end)]
-        self._add(begin.point, (), outline.edges[begin.edge])
+        self._add(begin.point, (), polygon.edges[begin.edge])
         k, steps = (begin.edge + 1) % count, (end.edge - begin.edge) % count or count
         for _ in range(steps):
-            self._add(outline.points[k], outline.names[k], outline.edges[k])
+            self._add(polygon.points[k], polygon.names[k], polygon.edges[k])
             k = (k + 1) % count
         self._add(end.point, (), label)
 
-    def finish(self) -> Outline | None:
+    def finish(self) -> LabelledPolygon | None:
         if len(self.points) > 1 and _same(self.points[0], self.points[-1]):
             self.names[0] = tuple(dict.fromkeys(self.names[-1] + self.names[0]))
             for part in (self.points, self.names, self.edges):
@@ -140,7 +146,7 @@ class _Builder:
             missing = tuple(name for name in names if not any(name in known for known in self.names))
             corner = int(np.argmin([np.abs(p - point).max() for p in self.points]))
             self.names[corner] += missing
-        return Outline(np.array(self.points), tuple(self.names), tuple(self.edges))
+        return LabelledPolygon(np.array(self.points), tuple(self.names), tuple(self.edges))
 
     def _add(self, point: NDArray[np.float64], names: tuple[str, ...], edge: str) -> None:
         if self.points and _same(self.points[-1], point):
@@ -153,4 +159,4 @@ class _Builder:
 
 
 def _same(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
-    return bool(np.abs(a - b).max() < 1e-6)
+    return bool(abs(a[0] - b[0]) < 1e-6 and abs(a[1] - b[1]) < 1e-6)

@@ -4,39 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.errors import GarmentError
 from polyfold.geometry import FoldLine, rotate
-from polyfold.polygon._covering import inside_depth
+from polyfold.polygon._covering import inside_depth, silhouette
 from polyfold.polygon._layers import Facet, fold_facets
 from polyfold.polygon._text import model_text
+from polyfold.polygon._vertices import VertexState
 
 Floats = NDArray[np.float64]
 
 _TOUCH = 1.0
 """A vertex this close to a piece above it [px] counts as hidden: its position is not known better than that."""
-
-
-@dataclass(frozen=True, eq=False)
-class VertexState:
-    """One named vertex as it lies now.
-
-    Attributes:
-        point: position [px], shape (2,).
-        description: what it is, in words; says so when it is folded over.
-        layers: layers it belongs to, lowest first; a crease's end belongs to two or more.
-        visible: nothing lies on top of it.
-        reversed: the reverse side is up.
-    """
-
-    point: Floats
-    description: str
-    layers: tuple[int, ...]
-    visible: bool
-    reversed: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +40,6 @@ class FoldedModel:
     folds: tuple[FoldLine, ...] = ()
     kind: str = "cloth"
     _facets: tuple[Facet, ...] | None = field(default=None, repr=False)
-    _cache: dict[str, object] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         rest = np.array(self.rest, float)
@@ -76,7 +58,7 @@ class FoldedModel:
         Raises:
             PlanError: if the line is too short, or leaves all cloth on one side; the message says which.
         """
-        facets = fold_facets(self.facets(), np.array(line.start), np.array(line.end), len(self.folds) + 1)
+        facets = fold_facets(self.facets(), line, len(self.folds) + 1)
         return FoldedModel(self.rest, self.names, self.descriptions, (*self.folds, line), self.kind, facets)
 
     def before(self, fold: int) -> FoldedModel:
@@ -85,28 +67,15 @@ class FoldedModel:
 
     def facets(self) -> tuple[Facet, ...]:
         """The flat pieces the garment consists of now."""
-        if self._facets is None:
-            flat = np.column_stack([np.eye(2), np.zeros(2)])
-            labels = tuple((name,) for name in self.names)
-            facets: tuple[Facet, ...] = (Facet(self.rest, labels, ("",) * len(labels), 0, False, flat),)
-            for number, line in enumerate(self.folds, start=1):
-                facets = fold_facets(facets, np.array(line.start), np.array(line.end), number)
-            object.__setattr__(self, "_facets", facets)
-        return self._facets
+        return self._pieces
 
     def outline(self) -> Floats:
         """The silhouette [px], shape (N, 2): the largest outer ring of the union of all pieces."""
-        if "outline" not in self._cache:
-            from polyfold.polygon._covering import silhouette
-
-            self._cache["outline"] = silhouette([facet.polygon for facet in self.facets()])
-        return self._cache["outline"]
+        return self._outline
 
     def vertices(self) -> dict[str, VertexState]:
         """Every named vertex as it lies now: the template's in polygon order, then the creases' ends."""
-        if "vertices" not in self._cache:
-            self._cache["vertices"] = {name: self._state(name) for name in self._all_names()}
-        return dict(self._cache["vertices"])
+        return dict(self._vertices)
 
     def points(self) -> dict[str, Floats]:
         """Name -> position [px], shape (2,)."""
@@ -123,9 +92,12 @@ class FoldedModel:
     def transformed(
         self, angle: float, translation: ArrayLike = (0.0, 0.0), centre: ArrayLike = (0.0, 0.0)
     ) -> FoldedModel:
-        """The whole model moved rigidly: turned by ``angle`` [rad] about ``centre`` [px], then shifted.
+        """The whole model moved rigidly.
 
-        The angle is positive from x towards y: clockwise as seen in the image.
+        Args:
+            angle: how far it is turned [rad], positive from x towards y: clockwise as seen in the image.
+            translation: how far it is shifted afterwards [px], shape (2,).
+            centre: what it is turned about [px], shape (2,).
         """
         shift = np.asarray(translation, float)
 
@@ -140,6 +112,23 @@ class FoldedModel:
         if not self.folds:
             raise GarmentError("the model has no fold to replace; use fold() to add one")
         return self.before(len(self.folds) - 1).fold(line)
+
+    @cached_property
+    def _pieces(self) -> tuple[Facet, ...]:
+        if self._facets is not None:
+            return self._facets
+        facets: tuple[Facet, ...] = (Facet.flat(self.rest, self.names),)
+        for number, line in enumerate(self.folds, start=1):
+            facets = fold_facets(facets, line, number)
+        return facets
+
+    @cached_property
+    def _outline(self) -> Floats:
+        return silhouette(facet.polygon for facet in self.facets())
+
+    @cached_property
+    def _vertices(self) -> dict[str, VertexState]:
+        return {name: self._state(name) for name in self._all_names()}
 
     def _all_names(self) -> list[str]:
         creases = [f"fold{k}_{end}" for k in range(1, len(self.folds) + 1) for end in ("start", "end")]

@@ -18,13 +18,16 @@ class Generator(Protocol):
     """Maps skeletal parameters, shape (P,), to vertices [px], shape (V, 2), anywhere in the image."""
 
     def parameters(self, vertices: Floats) -> Floats:
-        """Parameters whose polygon comes close to the given vertices, shape (P,)."""
+        """Parameters, shape (P,), whose polygon comes close to the given vertices [px], shape (V, 2)."""
+        ...
 
     def vertices(self, parameters: Floats) -> Floats:
-        """The polygon, shape (V, 2)."""
+        """The polygon [px], shape (V, 2), of parameters of shape (P,)."""
+        ...
 
     def jacobian(self, parameters: Floats) -> Floats:
-        """Derivatives of the vertices by the parameters, shape (V, 2, P)."""
+        """Derivatives, shape (V, 2, P), of the vertices [px] at parameters of shape (P,)."""
+        ...
 
 
 class SymmetricGenerator:
@@ -49,7 +52,7 @@ class SymmetricGenerator:
         self._basis = _symmetric_basis(index, pairs)
 
     def parameters(self, vertices: ArrayLike) -> Floats:
-        """Pose and symmetric shape closest to the given vertices, shape (P,)."""
+        """Pose and symmetric shape, shape (P,), closest to the given vertices [px], shape (V, 2)."""
         target = np.asarray(vertices, float)
         centre = target.mean(0)
         across = self._side @ (target - centre)
@@ -59,12 +62,12 @@ class SymmetricGenerator:
         return np.concatenate([centre, [heading], shape])
 
     def vertices(self, parameters: ArrayLike) -> Floats:
-        """The polygon [px], shape (V, 2)."""
+        """The polygon [px], shape (V, 2), of parameters of shape (P,)."""
         parameters = np.asarray(parameters, float)
         return (self._basis @ parameters[3:]) @ _rotation(parameters[2]).T + parameters[:2]
 
     def jacobian(self, parameters: ArrayLike) -> Floats:
-        """Derivatives of the vertices by the parameters, shape (V, 2, P)."""
+        """Derivatives, shape (V, 2, P), of the vertices [px] at parameters of shape (P,)."""
         parameters = np.asarray(parameters, float)
         turn = _rotation(parameters[2])
         offsets = (self._basis @ parameters[3:]) @ turn.T

@@ -1,16 +1,21 @@
-"""Facets: the flat pieces that a folded garment consists of, and how one fold cuts, mirrors and stacks them."""
+"""Facets: the flat pieces that a folded garment consists of, and how one fold cuts, mirrors and stacks them.
+
+This is the one place that folds polygons: the model of the grounding and the ideal result both use it. They differ in
+how they count layers. The model lays the whole lifted stack on top of all that remains; the ideal
+(:mod:`polyfold.tasks`) lets each piece down onto what lies below it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import PlanError
-from polyfold.geometry import mirror, polygon_area, signed_distance
-from polyfold.polygon._cutting import Outline, cut
+from polyfold.geometry import FoldLine, polygon_area
+from polyfold.polygon._cutting import LabelledPolygon, cut
 
 Floats = NDArray[np.float64]
 
@@ -36,28 +41,73 @@ class Facet:
         edges: label of the edge from each corner to the next: ``crease`` or empty.
         layer: 0 lies on the table; higher lies further up.
         flipped: the reverse side is up.
-        motion: affine map from the flat garment to here, shape (2, 3).
+        motion: affine map from the flat garment to here [px], shape (2, 3).
     """
 
-    polygon: NDArray[np.float64]
+    polygon: Floats
     names: tuple[tuple[str, ...], ...]
     edges: tuple[str, ...]
     layer: int
     flipped: bool
-    motion: NDArray[np.float64]
+    motion: Floats
+
+    @classmethod
+    def flat(cls, polygon: Floats, names: Sequence[str] = (), layer: int = 0) -> Facet:
+        """A piece that has not been folded.
+
+        Args:
+            polygon: corners [px], shape (N, 2).
+            names: the name of the vertex at each corner; without names no corner has one.
+            layer: 0 lies on the table.
+        """
+        labels = tuple((name,) for name in names) or ((),) * len(polygon)
+        return cls(polygon, labels, ("",) * len(polygon), layer, False, np.column_stack([np.eye(2), np.zeros(2)]))
 
     @property
     def area(self) -> float:
         """Area [px²]."""
         return abs(polygon_area(self.polygon))
 
+    def turned_over(self, line: FoldLine, layer: int) -> Facet:
+        """The same piece mirrored across a fold line, in another layer."""
+        origin = line.mirror(np.zeros(2))
+        turned = [line.mirror(column) for column in self.motion.T]
+        motion = np.column_stack([turned[0] - origin, turned[1] - origin, turned[2]])
+        polygon = line.mirror(self.polygon)
+        return replace(self, polygon=polygon, layer=layer, flipped=not self.flipped, motion=motion)
 
-def fold_facets(facets: Sequence[Facet], start: Floats, end: Floats, number: int) -> tuple[Facet, ...]:
-    """Lift what lies left of ``start -> end``, mirror it and lay it on top.
+
+def cut_facets(
+    facets: Iterable[Facet], line: FoldLine, least_area: float = 0.0
+) -> tuple[tuple[Facet, ...], tuple[Facet, ...]]:
+    """Cut facets along a fold line.
+
+    Args:
+        facets: the pieces before the cut.
+        line: the fold line [px].
+        least_area: smaller pieces [px²] are dropped.
+
+    Returns:
+        The pieces on the lifted side and the remaining ones, each where and in the layer it was.
+    """
+    lifted: list[Facet] = []
+    remaining: list[Facet] = []
+    direction = np.subtract(line.end, line.start) / line.length
+    for facet in facets:
+        whole = LabelledPolygon(facet.polygon, facet.names, facet.edges)
+        left, right = cut(whole, line.distance(facet.polygon), direction, CREASE)
+        for side, pieces in ((lifted, left), (remaining, right)):
+            found = (replace(facet, polygon=p.points, names=p.names, edges=p.edges) for p in pieces)
+            side.extend(piece for piece in found if piece.area >= least_area)
+    return tuple(lifted), tuple(remaining)
+
+
+def fold_facets(facets: Sequence[Facet], line: FoldLine, number: int) -> tuple[Facet, ...]:
+    """Lift what lies left of a fold line, mirror it and lay it on top of all that remains.
 
     Args:
         facets: the pieces before the fold.
-        start, end: fold line [px], shape (2,).
+        line: the fold line [px].
         number: which fold this is, from 1; names the crease's ends ``fold{number}_start`` and ``fold{number}_end``.
 
     Returns:
@@ -66,34 +116,19 @@ def fold_facets(facets: Sequence[Facet], start: Floats, end: Floats, number: int
     Raises:
         PlanError: if the line is too short or leaves all cloth on one side.
     """
-    start, end = np.asarray(start, float), np.asarray(end, float)
-    length = float(np.hypot(*(end - start)))
-    if not length >= LEAST_LENGTH:
+    if not line.length >= LEAST_LENGTH:
         raise PlanError(
-            f"the fold line is {length:.0f} px long, so its direction is uncertain; choose two points at least "
+            f"the fold line is {line.length:.0f} px long, so its direction is uncertain; choose two points at least "
             f"{LEAST_LENGTH:.0f} px apart (vertices brought together by a fold coincide: use the crease's ends)"
         )
-    lifted, remaining = _cut_all(facets, start, end)
+    lifted, remaining = cut_facets(facets, line, LEAST_AREA)
     _check_sides(lifted, remaining)
-    lifted, remaining = _name_crease(lifted, remaining, start, end, number)
+    lifted, remaining = _name_crease(lifted, remaining, line, number)
     top = max(facet.layer for facet in remaining) + 1 + max(facet.layer for facet in lifted)
-    return (*remaining, *(_turn_over(facet, start, end, top - facet.layer) for facet in lifted))
+    return (*remaining, *(facet.turned_over(line, top - facet.layer) for facet in lifted))
 
 
-def _cut_all(facets: Sequence[Facet], start: Floats, end: Floats) -> tuple[list[Facet], list[Facet]]:
-    lifted: list[Facet] = []
-    remaining: list[Facet] = []
-    direction = (end - start) / np.hypot(*(end - start))
-    for facet in facets:
-        distance = signed_distance(facet.polygon, start, end)
-        left, right = cut(Outline(facet.polygon, facet.names, facet.edges), distance, direction, CREASE)
-        for side, pieces in ((lifted, left), (remaining, right)):
-            found = (replace(facet, polygon=p.points, names=p.names, edges=p.edges) for p in pieces)
-            side.extend(piece for piece in found if piece.area >= LEAST_AREA)
-    return lifted, remaining
-
-
-def _check_sides(lifted: list[Facet], remaining: list[Facet]) -> None:
+def _check_sides(lifted: Sequence[Facet], remaining: Sequence[Facet]) -> None:
     if not lifted:
         raise PlanError(
             "all cloth lies right of the fold line, so nothing would be lifted; move the line onto the cloth, or swap "
@@ -107,12 +142,13 @@ def _check_sides(lifted: list[Facet], remaining: list[Facet]) -> None:
 
 
 def _name_crease(
-    lifted: list[Facet], remaining: list[Facet], start: Floats, end: Floats, number: int
+    lifted: Sequence[Facet], remaining: Sequence[Facet], line: FoldLine, number: int
 ) -> tuple[list[Facet], list[Facet]]:
     """Name the outermost ends of the new crease in every piece that reaches them."""
-    direction = (end - start) / np.hypot(*(end - start))
+    start = np.asarray(line.start)
+    direction = np.subtract(line.end, line.start) / line.length
     pieces = [*lifted, *remaining]
-    along = [np.where(_on_crease(piece, start, end), (piece.polygon - start) @ direction, np.nan) for piece in pieces]
+    along = [np.where(_on_crease(piece, line), (piece.polygon - start) @ direction, np.nan) for piece in pieces]
     reach = np.concatenate(along)
     first, last = np.nanmin(reach), np.nanmax(reach)
     named = []
@@ -127,17 +163,9 @@ def _name_crease(
     return named[: len(lifted)], named[len(lifted) :]
 
 
-def _on_crease(piece: Facet, start: Floats, end: Floats) -> NDArray[np.bool_]:
+def _on_crease(piece: Facet, line: FoldLine) -> NDArray[np.bool_]:
     """Corners at which a crease edge on this very line begins or ends."""
     crease = np.array([label == CREASE for label in piece.edges])
-    near = np.abs(signed_distance(piece.polygon, start, end)) < 1e-6
+    near = np.abs(line.distance(piece.polygon)) < 1e-6
     edge = crease & near & np.roll(near, -1)
     return edge | np.roll(edge, 1)
-
-
-def _turn_over(facet: Facet, start: Floats, end: Floats, layer: int) -> Facet:
-    origin = mirror(np.zeros(2), start, end)
-    turned = [mirror(column, start, end) for column in facet.motion.T]
-    motion = np.column_stack([turned[0] - origin, turned[1] - origin, turned[2]])
-    polygon = mirror(facet.polygon, start, end)
-    return replace(facet, polygon=polygon, layer=layer, flipped=not facet.flipped, motion=motion)

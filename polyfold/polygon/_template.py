@@ -49,7 +49,7 @@ class Template:
         )
 
     Args:
-        kind: the garment kind.
+        kind: the garment kind (not a kind of component).
         names: vertex names in polygon order: lower-case letters, digits and underscores, at most 40 characters.
         descriptions: what each vertex is, in words, for a language model.
         parts: named parts in words (``left sleeve``) -> the vertices that make them up.
@@ -87,7 +87,7 @@ class Template:
 
     @property
     def canonical(self) -> Floats:
-        """An upright outline, longest side 1, centred on the origin, y down, shape (V, 2)."""
+        """An upright outline, longest side 1 (no unit), centred on the origin, y down, shape (V, 2)."""
         return self.canonical_shapes[0]
 
     def model(self, vertices: ArrayLike) -> FoldedModel:

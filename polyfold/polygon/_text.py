@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from polyfold.polygon._layers import Facet
-
-if TYPE_CHECKING:
-    from polyfold.polygon._folded import VertexState
+from polyfold.polygon._vertices import VertexState
 
 
 def model_text(

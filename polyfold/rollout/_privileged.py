@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from polyfold.garments import Garment
 from polyfold.geometry import FoldLine
-from polyfold.tasks import Task, fold_ideally, fold_lines
+from polyfold.tasks import Task, fold_lines
+from polyfold.tasks._ideal import fold_step_by_step
 from polyfold.tasks._words import describe
 from polyfold.types import Observation, SimState
 
@@ -50,8 +51,8 @@ def privileged_inputs(task: Task, garment: Garment, flat: SimState, seen: Observ
         seen: the picture of that state; its first pixel gives the table's colour.
     """
     lines = fold_lines(task, flat.keypoint_pixels())
-    masks = (fold_ideally(flat, garment.mesh, lines[: count + 1]).mask for count in range(len(lines)))
-    images = tuple(_drawn(mask, garment.colours[0], seen.rgb[0, 0]) for mask in masks)
+    folded = fold_step_by_step(flat, garment.mesh, lines)
+    images = tuple(_drawn(ideal.mask, garment.colours[0], seen.rgb[0, 0]) for ideal in folded)
     return PrivilegedInputs(tuple(lines), tuple(describe(fold) for fold in task.steps), images)
 
 

@@ -2,6 +2,7 @@
 
 from polyfold.studies._cell import PICTURES, evaluate_cell
 from polyfold.studies._cells import Cell, cells
+from polyfold.studies._executors import in_processes
 from polyfold.studies._run import evaluate
 from polyfold.studies._study import Study, ablate, experiment_of, grid, load, with_variants
 
@@ -15,6 +16,7 @@ __all__ = [
     "evaluate_cell",
     "experiment_of",
     "grid",
+    "in_processes",
     "load",
     "with_variants",
 ]

@@ -37,7 +37,8 @@ from polyfold.rollout import build_agent, run_episode
 from polyfold.rollout._inputs import GUIDED, PRIVILEGED
 from polyfold.studies._cells import Cell
 from polyfold.studies._study import Study, experiment_of
-from polyfold.tasks import OpenTask, Task, fold_lines, measure
+from polyfold.tasks import OpenTask, Task, fold_lines
+from polyfold.tasks._goals import measure
 from polyfold.types import Decision, Episode, Failure, Observation, Outcome, Subgoal
 
 PICTURES = ("none", "failed", "all")

@@ -1,65 +1,101 @@
-"""Where the episodes of a study run: in this process, in several, or on a Dask cluster."""
+"""Where independent jobs run: in this process, in several, or on a Dask cluster."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from itertools import islice
+from typing import Any, TypeVar
 
 from polyfold import plugins
 from polyfold.errors import ConfigError
-from polyfold.studies._cells import Cell
+
+_Job = TypeVar("_Job")
+_Result = TypeVar("_Result")
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 
 
-Outcome = Any
+def in_processes(
+    work: Callable[[_Job], _Result], jobs: Iterable[_Job], workers: int
+) -> Generator[tuple[_Job, _Result], None, None]:
+    """Run independent jobs in processes of this machine and yield (job, result) as they finish.
+
+    The first job runs here and fills the compiler's cache, from which the workers start. Workers keep to one thread
+    each, know the components that were registered by hand, leave Ctrl-C to this process, and end with it however it
+    ends. A caller that keeps each result before it asks for the next loses at most the jobs in flight when killed.
+
+    Args:
+        work: what to do; must be importable by the workers.
+        jobs: what to do it with; read as workers become free.
+        workers: number of processes; with 1 all jobs run here.
+    """
+    waiting = iter(jobs)
+    for job in waiting if workers <= 1 else islice(waiting, 1):
+        yield job, work(job)
+    if workers > 1:
+        yield from _in_pool(work, waiting, workers)
 
 
-Job = Callable[[Cell], Outcome]
-
-
-Results = Iterator[tuple[Cell, Outcome]]
-
-
-def _results(job: Job, missing: Sequence[Cell], workers: int, engine: str, address: str | None) -> Results:
-    if missing and engine == "dask":
-        return _on_dask(job, missing, workers, address)
-    return _in_processes(job, missing, workers) if missing and workers > 1 else _here(job, missing)
-
-
-def _here(job: Job, missing: Sequence[Cell]) -> Results:
-    for cell in missing:
-        yield cell, job(cell)
-
-
-def _in_processes(job: Job, missing: Sequence[Cell], workers: int) -> Results:
-    """The first episode runs here and fills the compiler's cache; then the workers start from it."""
-    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+def _in_pool(
+    work: Callable[[_Job], _Result], waiting: Iterator[_Job], workers: int
+) -> Generator[tuple[_Job, _Result], None, None]:
+    from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
     from multiprocessing import get_context
 
-    yield missing[0], job(missing[0])
-    waiting = iter(missing[1:])
     with _one_thread_each():
         pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare_worker, (plugins.portable(),))
+        running: dict[Future[_Result], _Job] = {}
         try:
-            running = {pool.submit(job, cell): cell for cell in _first(waiting, 2 * workers)}
+            running |= {pool.submit(work, job): job for job in islice(waiting, 2 * workers)}
             while running:
                 finished, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in finished:
-                    cell = running.pop(future)
-                    yield cell, future.result()
-                    running |= {pool.submit(job, more): more for more in _first(waiting, 1)}
+                    yield running.pop(future), future.result()
+                    running |= {pool.submit(work, job): job for job in islice(waiting, 1)}
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _first(cells_left: Iterator[Cell], count: int) -> list[Cell]:
-    return [cell for _, cell in zip(range(count), cells_left, strict=False)]
+def on_dask(
+    work: Callable[[_Job], _Result], jobs: Sequence[_Job], workers: int, address: str | None
+) -> Generator[tuple[_Job, _Result], None, None]:
+    """Run independent jobs on a Dask cluster and yield (job, result) as they finish.
+
+    Args:
+        work: what to do; must be importable by the workers.
+        jobs: what to do it with.
+        workers: size of the cluster that is started on this machine if there is no ``address``.
+        address: of the scheduler of a running cluster.
+
+    Raises:
+        ConfigError: if Dask is not installed.
+    """
+    try:
+        from distributed import (  # pyright: ignore[reportMissingImports]  (an optional package)
+            Client,
+            LocalCluster,
+            as_completed,
+        )
+    except ModuleNotFoundError as error:
+        raise ConfigError("the engine 'dask' needs: pip install distributed") from error
+    with _one_thread_each():
+        cluster = None if address else LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
+        with Client(address or cluster) as client:
+            try:
+                for kind, name, target in plugins.portable():
+                    client.run(plugins.register, kind, name, target)
+                running = {client.submit(work, job, pure=False): job for job in jobs}
+                for future, result in as_completed(list(running), with_results=True):
+                    yield running.pop(future), result
+            finally:
+                if cluster is not None:
+                    cluster.close()
 
 
-def _one_thread_each() -> Any:
-    """Libraries of the workers keep to one thread: the parallelism is in the episodes."""
+def _one_thread_each() -> AbstractContextManager[Any]:
+    """Libraries of the workers keep to one thread: the parallelism is in the jobs."""
     from unittest.mock import patch
 
     return patch.dict(os.environ, dict.fromkeys(_THREADS, "1"))
@@ -82,22 +118,3 @@ def _prepare_worker(registrations: Sequence[tuple[str, str, str]]) -> None:
     threading.Thread(target=end_with_parent, daemon=True).start()
     for kind, name, target in registrations:
         plugins.register(kind, name, target)
-
-
-def _on_dask(job: Job, missing: Sequence[Cell], workers: int, address: str | None) -> Results:
-    try:
-        from distributed import Client, LocalCluster, as_completed
-    except ModuleNotFoundError as error:
-        raise ConfigError("the engine 'dask' needs: pip install distributed") from error
-    with _one_thread_each():
-        cluster = None if address else LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
-        with Client(address or cluster) as client:
-            try:
-                for kind, name, target in plugins.portable():
-                    client.run(plugins.register, kind, name, target)
-                running = {client.submit(job, cell, pure=False): cell for cell in missing}
-                for future, record in as_completed(list(running), with_results=True):
-                    yield running.pop(future), record
-            finally:
-                if cluster is not None:
-                    cluster.close()

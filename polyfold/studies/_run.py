@@ -7,7 +7,7 @@ model. A run does not go on with changed code, prompts or weights unless that is
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -26,9 +26,9 @@ from polyfold.logs import (
     write_atomically,
 )
 from polyfold.plugins.interfaces import LabelledMetric, Metric
-from polyfold.studies._cell import PICTURES, Render, evaluate_with_picture
+from polyfold.studies._cell import PICTURES, Render, Scored, evaluate_with_picture
 from polyfold.studies._cells import Cell, cells
-from polyfold.studies._executors import Results, _results
+from polyfold.studies._executors import in_processes, on_dask
 from polyfold.studies._study import Study, experiment_of
 
 ENGINES = ("local", "dask")
@@ -87,8 +87,10 @@ def evaluate(
             _check_portable()
     plugins.notify("on_study_start", study=study)
     job = partial(evaluate_with_picture, study, pictures=pictures, render=render)
+    dask = missing and engine == "dask"
+    results = on_dask(job, missing, workers, address) if dask else in_processes(job, missing, workers)
     try:
-        with closing(_results(job, missing, workers, engine, address)) as results:
+        with closing(results):
             shown = _with_progress(results, study, len(wanted), list(done.values()), progress and bool(missing))
             for cell, (record, picture) in shown:
                 run.append(_with_picture(run.path, cell, record, picture))
@@ -146,8 +148,8 @@ def _with_picture(folder: Path, cell: Cell, record: StudyEpisodeRecord, picture:
 
 
 def _with_progress(
-    results: Results, study: Study, total: int, done: Sequence[StudyEpisodeRecord], shown: bool
-) -> Results:
+    results: Iterable[tuple[Cell, Scored]], study: Study, total: int, done: Sequence[StudyEpisodeRecord], shown: bool
+) -> Iterator[tuple[Cell, Scored]]:
     from tqdm import tqdm
 
     criterion = study.criteria[0]

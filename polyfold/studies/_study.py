@@ -54,14 +54,14 @@ class Study(BaseModel):
     name: str = Field(pattern=r"^[A-Za-z0-9_.-]{1,60}$")
     suite: str = "polyfold70"
     tasks: tuple[str, ...] = ("*",)
-    garments: int = Field(1, ge=1, le=10_000)
-    first_seed: int = Field(0, ge=0)
+    garments: int = Field(default=1, ge=1, le=10_000)
+    first_seed: int = Field(default=0, ge=0)
     instructions: Literal["first", "in-turn", "all"] = "in-turn"
-    edge_length: float = Field(0.0155, gt=0.004, le=0.05)
+    edge_length: float = Field(default=0.0155, gt=0.004, le=0.05)
     split: Literal["seen", "unseen"] | None = None
     steps: Literal["single", "multi"] | None = None
     reference: Literal["oracle", "ideal"] = "oracle"
-    criteria: tuple[str, ...] = Field(("lenient", "strict"), min_length=1)
+    criteria: tuple[str, ...] = Field(default=("lenient", "strict"), min_length=1)
     metrics: dict[str, dict[str, Any]] = Field(default_factory=dict)
     published: dict[str, dict[str, float]] = Field(default_factory=dict)
     seed: int = 0

@@ -167,7 +167,8 @@ def _hull(mask: Mask) -> NDArray[np.int32]:
     import cv2
 
     found = 2 * np.argwhere(mask)[:, ::-1].astype(np.int32)
-    return cv2.convexHull(np.concatenate([found + middle for middle in ((1, 0), (0, 1), (-1, 0), (0, -1))]))
+    middles = np.concatenate([found + middle for middle in ((1, 0), (0, 1), (-1, 0), (0, -1))])
+    return np.asarray(cv2.convexHull(middles), np.int32)
 
 
 def _rectangle(hull: NDArray[np.int32]) -> tuple[float, float]:

@@ -3,32 +3,32 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.garments import Mesh
-from polyfold.geometry import Camera, FoldLine, fill_polygon, iou, mirror
+from polyfold.geometry import Camera, FoldLine, fill_polygon, iou
+from polyfold.polygon._covering import covered_area, overlap_area, shapes, solid_parts
+from polyfold.polygon._layers import Facet, cut_facets
 from polyfold.types import SimState
+from polyfold.types._fidelity import Fidelity, Reference
 
 if TYPE_CHECKING:
-    import shapely
-from polyfold.types._fidelity import Fidelity, Reference
+    from shapely.geometry.base import BaseGeometry
 
 LAYER_THICKNESS = 0.0035
 """Height of one layer of cloth [m], as thick as the ``xpbd`` simulator makes it by default."""
 
-
 MOVED = 0.020
 """Particles that the ideal moves further than this [m] count as moved."""
 
-
 TOUCHING = 9.0
-"""Facets that overlap by less than this [px²] do not lie on each other."""
-
+"""Sheets that overlap by less than this [px²] do not lie on each other."""
 
 Floats = NDArray[np.float64]
 
@@ -51,11 +51,36 @@ class IdealFold:
 
 
 @dataclass(frozen=True, eq=False)
-class _Facet:
-    """A flat piece of cloth: its polygon [px, as if on the table] and how many layers lie under it."""
+class _Sheet:
+    """The part of one panel that went through the same turns; all of it lies in one layer.
 
-    polygon: shapely.Geometry
+    Attributes:
+        facets: its pieces; none where a fold left nothing of the panel on this side of the line.
+        layer: how many layers of cloth lie under it.
+    """
+
+    facets: tuple[Facet, ...]
     layer: int
+
+    @cached_property
+    def shapes(self) -> list[BaseGeometry]:
+        """The pieces as shapes, to find overlaps with."""
+        return shapes(facet.polygon for facet in self.facets)
+
+
+@dataclass(frozen=True, eq=False)
+class _Stack:
+    """The garment between two folds.
+
+    Attributes:
+        sheets: what it consists of.
+        points: where each particle is [px, as if on the table], shape (N, 2).
+        sheet_of: index of each particle's sheet, shape (N,).
+    """
+
+    sheets: list[_Sheet]
+    points: Floats
+    sheet_of: NDArray[np.int64]
 
 
 def fold_ideally(
@@ -69,18 +94,27 @@ def fold_ideally(
         lines: directed fold lines [px], in order.
         layer_thickness: height of one layer of cloth [m].
     """
-    camera = flat.camera
-    points = camera.to_pixels(flat.positions[:, :2])
-    floor = float(flat.positions[:, 2].min())
-    facets = _flat_facets(points, mesh)
-    facet_of = mesh.layer.astype(int)
+    stack = _flat_stack(flat, mesh)
     for line in lines:
-        facets, facet_of, points = _folded(facets, facet_of, points, line)
-    layer = np.array([facet.layer for facet in facets])[facet_of]
-    heights = floor + layer_thickness * layer
-    positions = camera.to_world(points)
-    positions[:, 2] = heights
-    return IdealFold(positions, layer, _silhouette(facets, camera, floor, layer_thickness), _covered_area(facets))
+        stack = _folded(stack, line)
+    return _as_seen(stack, flat, layer_thickness)
+
+
+def fold_step_by_step(
+    flat: SimState, mesh: Mesh, lines: Iterable[FoldLine], layer_thickness: float = LAYER_THICKNESS
+) -> list[IdealFold]:
+    """Fold the flat garment along lines and keep what it is after each of them.
+
+    Args: as in :func:`fold_ideally`.
+
+    Returns:
+        One ideal fold for each line; the last one is what :func:`fold_ideally` gives.
+    """
+    stack, found = _flat_stack(flat, mesh), []
+    for line in lines:
+        stack = _folded(stack, line)
+        found.append(_as_seen(stack, flat, layer_thickness))
+    return found
 
 
 def fidelity(
@@ -111,85 +145,52 @@ def fidelity(
     return Fidelity(iou(final_mask, ideal.mask), mean_mm, int(moved.sum()), reference)
 
 
-def _flat_facets(points: Floats, mesh: Mesh) -> list[_Facet]:
-    """One facet per panel."""
-    import shapely
+def _flat_stack(flat: SimState, mesh: Mesh) -> _Stack:
+    """One sheet for each panel."""
+    points = flat.camera.to_pixels(flat.positions[:, :2])
+    pieces = solid_parts(points[mesh.boundary])
+    sheets = [_Sheet(tuple(Facet.flat(piece, layer=layer) for piece in pieces), layer) for layer in range(mesh.layers)]
+    return _Stack(sheets, points, mesh.layer.astype(int))
 
-    outline = shapely.make_valid(shapely.Polygon(points[mesh.boundary]))
-    return [_Facet(outline, layer) for layer in range(mesh.layers)]
 
-
-def _folded(
-    facets: list[_Facet], facet_of: NDArray[np.int64], points: Floats, line: FoldLine
-) -> tuple[list[_Facet], NDArray[np.int64], Floats]:
-    """One fold: facets are cut by the line, and what is left of it turns over and comes to lie on the rest."""
-    lifted_points = line.lifts(points)
-    moved_points = points.copy()
-    moved_points[lifted_points] = line.mirror(points[lifted_points])
-    result: list[_Facet] = []
-    stays, goes = {}, {}
-    half_plane = _lifted_half_plane(line)
-    for number, facet in enumerate(facets):
-        rest = facet.polygon.difference(half_plane)
-        stays[number] = len(result)
-        result.append(replace(facet, polygon=rest))
+def _folded(stack: _Stack, line: FoldLine) -> _Stack:
+    """One fold: sheets are cut by the line, and what is left of it turns over and comes down on the rest."""
+    halves = [cut_facets(sheet.facets, line) for sheet in stack.sheets]
+    sheets = [_Sheet(remaining, sheet.layer) for sheet, (_, remaining) in zip(stack.sheets, halves, strict=True)]
+    goes_to = np.zeros(len(halves), int)
     # The highest layer of the lifted stack comes down first.
-    for number in sorted(range(len(facets)), key=lambda number: -facets[number].layer):
-        turned = _mirrored(facets[number].polygon.intersection(half_plane), line)
-        goes[number] = len(result)
-        result.append(_Facet(turned, _layer_on(result, turned, facets[number].layer)))
-    new_facet_of = np.array(
-        [goes[int(facet)] if up else stays[int(facet)] for facet, up in zip(facet_of, lifted_points, strict=True)]
-    )
-    return result, new_facet_of, moved_points
+    for number in sorted(range(len(halves)), key=lambda number: -stack.sheets[number].layer):
+        goes_to[number] = len(sheets)
+        sheets.append(_laid_on(sheets, halves[number][0], line, stack.sheets[number].layer))
+    lifted = line.lifts(stack.points)
+    sheet_of = np.where(lifted, goes_to[stack.sheet_of], stack.sheet_of)
+    return _Stack(sheets, line.fold(stack.points), sheet_of)
 
 
-def _layer_on(below: list[_Facet], turned: shapely.Geometry, otherwise: int) -> int:
-    """The lowest layer above everything that the turned facet lies on; ``otherwise`` is for an empty facet."""
-    if turned.is_empty:
-        return otherwise
-    under = [facet.layer for facet in below if facet.polygon.intersection(turned).area > TOUCHING]
-    return max(under) + 1 if under else 0
+def _laid_on(below: Sequence[_Sheet], lifted: Iterable[Facet], line: FoldLine, layer: int) -> _Sheet:
+    """What was lifted from a layer, turned over, in the lowest layer above everything that it lies on."""
+    turned = _Sheet(tuple(facet.turned_over(line, layer) for facet in lifted), layer)
+    if not turned.facets:
+        return turned
+    under = [sheet.layer for sheet in below if overlap_area(sheet.shapes, turned.shapes) > TOUCHING]
+    return _Sheet(turned.facets, max(under, default=-1) + 1)
 
 
-def _lifted_half_plane(line: FoldLine) -> shapely.Geometry:
-    """A polygon that covers all that is left of the line in any image."""
-    import shapely
-
-    start, end = np.asarray(line.start), np.asarray(line.end)
-    along = (end - start) / line.length
-    left = np.array([along[1], -along[0]])
-    reach = 1e5
-    back, front = start - reach * along, start + reach * along
-    return shapely.Polygon([back, front, front + reach * left, back + reach * left])
+def _as_seen(stack: _Stack, flat: SimState, layer_thickness: float) -> IdealFold:
+    camera, floor = flat.camera, float(flat.positions[:, 2].min())
+    layer = np.array([sheet.layer for sheet in stack.sheets])[stack.sheet_of]
+    positions = camera.to_world(stack.points)
+    positions[:, 2] = floor + layer_thickness * layer
+    area = covered_area(shape for sheet in stack.sheets for shape in sheet.shapes)
+    return IdealFold(positions, layer, _silhouette(stack.sheets, camera, floor, layer_thickness), area)
 
 
-def _mirrored(polygon: shapely.Geometry, line: FoldLine) -> shapely.Geometry:
-    import shapely
-
-    return shapely.transform(polygon, lambda points: mirror(points, line.start, line.end))
-
-
-def _covered_area(facets: list[_Facet]) -> float:
-    import shapely
-
-    return float(shapely.union_all([facet.polygon for facet in facets]).area)
-
-
-def _silhouette(facets: list[_Facet], camera: Camera, floor: float, layer_thickness: float) -> NDArray[np.bool_]:
-    """All facets at the height of their layer, as the camera sees them, shape (H, W)."""
+def _silhouette(sheets: Iterable[_Sheet], camera: Camera, floor: float, layer_thickness: float) -> NDArray[np.bool_]:
+    """All sheets at the height of their layer, as the camera sees them, shape (H, W)."""
     mask = np.zeros((camera.height, camera.width), bool)
-    for facet in facets:
-        for ring in _rings(facet.polygon):
-            world = camera.to_world(ring)
-            world[:, 2] = floor + layer_thickness * facet.layer
+    for sheet in sheets:
+        for facet in sheet.facets:
+            world = camera.to_world(facet.polygon)
+            world[:, 2] = floor + layer_thickness * sheet.layer
             mask |= fill_polygon(camera.to_pixels(world), camera.height, camera.width)
     return mask
-
-
-def _rings(geometry: Any) -> list[Floats]:
-    """Outer rings of all polygons in a geometry [px], each of shape (K, 2)."""
-    import shapely
-
-    parts = [part for part in shapely.get_parts(geometry) if part.geom_type == "Polygon"]
-    return [shapely.get_coordinates(part.exterior)[:-1] for part in parts]

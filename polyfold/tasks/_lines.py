@@ -44,7 +44,8 @@ def mirror_line(sources: ArrayLike, targets: ArrayLike) -> FoldLine:
     """The line whose reflection brings ``sources`` nearest to ``targets`` (least squares), sources on its left.
 
     Args:
-        sources, targets: corresponding pixels, shape (N, 2).
+        sources: positions [px], shape (N, 2).
+        targets: where each should come to lie [px], shape (N, 2).
 
     Raises:
         ValueError: if sources and targets coincide.

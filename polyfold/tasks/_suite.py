@@ -1,7 +1,7 @@
 """Folding tasks as data: a suite file names, for every task, its folds on the flat garment's keypoints.
 
-A goal that leaves the folds open is a ``[[goal]]`` instead of a ``[[task]]``; :mod:`polyfold.goals` describes it. A
-suite may hold both.
+A goal that leaves the folds open is a ``[[goal]]`` instead of a ``[[task]]``; :class:`polyfold.tasks.OpenTask`
+describes it. A suite may hold both.
 
 A suite is a TOML file::
 
@@ -27,14 +27,13 @@ from __future__ import annotations
 import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from polyfold.errors import ConfigError
+from polyfold.errors import ConfigError, did_you_mean, validation_problem
 from polyfold.tasks._goals import OpenTask
 
 
@@ -148,7 +147,7 @@ class Suite(BaseModel):
         return _of_id(self.entries, entry_id, self.name)
 
     def for_garment(self, kind: str) -> tuple[Task, ...]:
-        """The tasks on garments of this kind."""
+        """The tasks on garments of this garment kind."""
         return tuple(task for task in self.tasks if task.garment == kind)
 
 
@@ -159,9 +158,7 @@ def _of_id(entries: Sequence[_Entry], entry_id: str, suite: str) -> _Entry:
     for entry in entries:
         if entry.id == entry_id:
             return entry
-    known = [entry.id for entry in entries]
-    near = get_close_matches(entry_id, known, n=3)
-    hint = f"did you mean {' or '.join(near)}?" if near else f"it has {', '.join(known) or 'none'}"
+    hint = did_you_mean(entry_id, (entry.id for entry in entries))
     raise ConfigError(f"the suite {suite} has no task {entry_id!r}; {hint}")
 
 
@@ -184,7 +181,9 @@ def load_suite(source: str | Path) -> Suite:
 
 def _substituted(task: Any, points: Mapping[str, Any]) -> Any:
     """A raw task with its garment's named points replaced by their weights."""
-    named = points.get(task.get("garment"), {}) if isinstance(task, dict) else {}
+    if not isinstance(task, dict):
+        return task
+    named = points.get(str(task.get("garment")), {})
 
     def replaced(value: Any) -> Any:
         if isinstance(value, str):
@@ -213,13 +212,10 @@ def _read(source: str | Path) -> tuple[str, str]:
 
 def _first_problem(error: ValidationError, content: Mapping[str, Any]) -> str:
     """The first validation problem as one sentence with the task or goal and the field."""
-    problem = error.errors()[0]
-    place = list(problem["loc"])
-    message = problem["msg"].removeprefix("Value error, ")
-    if len(place) >= 2 and place[0] in ("task", "goal") and isinstance(place[1], int):
-        entry = content[place[0]][place[1]]
-        name = entry.get("id", f"number {place[1] + 1}") if isinstance(entry, dict) else f"number {place[1] + 1}"
-        field = ".".join(str(part) for part in place[2:]) or f"the {place[0]} itself"
-        return f"{place[0]} {name}, field {field}: {message}; see polyfold.{place[0]}s for the format"
-    field = ".".join(str(part) for part in place) or "the suite itself"
-    return f"field {field}: {message}; see polyfold.tasks for the format"
+    place = error.errors()[0]["loc"]
+    if len(place) < 2 or place[0] not in ("task", "goal"):
+        return f"the suite {validation_problem(error)} (see polyfold.tasks for the format)"
+    kind, number = place[:2]
+    entry = content[str(kind)][number]
+    name = entry.get("id", f"number {int(number) + 1}") if isinstance(entry, dict) else f"number {int(number) + 1}"
+    return f"{kind} {name} {validation_problem(error, below=2)} (see polyfold.tasks for the format)"

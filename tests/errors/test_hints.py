@@ -3,7 +3,7 @@
 from typing import Literal
 
 import pytest
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from polyfold.errors import did_you_mean, validation_problem
 
@@ -24,6 +24,8 @@ class Settings(BaseModel):
     def _together(self):
         if self.arms > self.reach:
             raise ValueError("arms need reach")
+        if self.arms < 0:
+            raise ValueError("it has no arms; give one or two")
         return self
 
 
@@ -50,6 +52,7 @@ def test_where_nothing_is_near_the_caller_may_say_more():
         ({"policy": {"gamma": 2}}, "has a bad value for 'policy.gamma': Input should be less than 1; change it"),
         ({"colour": "red"}, "has no setting 'colour'; did you mean 'color'?"),
         ({"arms": 3}, "has values that don't go together: arms need reach; change them"),
+        ({"arms": -1}, "can't be used: it has no arms; give one or two"),
     ],
 )
 def test_what_a_model_refuses_is_named_with_what_to_do(settings, said):
@@ -58,7 +61,32 @@ def test_what_a_model_refuses_is_named_with_what_to_do(settings, said):
     assert validation_problem(caught.value, Settings.model_fields) == said
 
 
+class Sentence(BaseModel):
+    text: str
+
+    @field_validator("text")
+    @classmethod
+    def _something(cls, text):
+        if not text:
+            raise ValueError("it says nothing; write what to do")
+        return text
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({}, "has no 'text'; add it"),
+        ({"text": ""}, "has a bad value for 'text': it says nothing; write what to do"),
+    ],
+)
+def test_advice_is_given_once_and_a_missing_value_is_called_missing(settings, said):
+    with pytest.raises(ValidationError) as caught:
+        Sentence(**settings)
+    assert validation_problem(caught.value) == said
+
+
 def test_what_the_message_names_already_is_left_out():
     with pytest.raises(ValidationError) as caught:
         Settings(policy={"gamma": 2})
     assert validation_problem(caught.value, below=1).startswith("has a bad value for 'gamma':")
+    assert validation_problem(caught.value, below=2).startswith("has a bad value: Input")

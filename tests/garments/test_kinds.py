@@ -58,6 +58,15 @@ def test_keypoints_are_the_template_s_vertices_in_its_order(kind):
 
 
 @every_kind
+def test_the_top_of_a_cloth_is_the_edge_that_naming_by_pose_calls_the_top(kind):
+    pattern = KINDS[kind].pattern
+    assert not pattern.cyclic or (pattern.cyclic[1:3], {pattern.cyclic[0], pattern.cyclic[3]}) == (
+        pattern.top,
+        set(pattern.bottom),
+    )
+
+
+@every_kind
 def test_keypoints_lie_on_the_silhouette_and_on_top_where_open(kind):
     garment = KINDS[kind].generate(2004, 0.0155)
     assert set(garment.keypoints.values()) <= set(garment.mesh.boundary.tolist())

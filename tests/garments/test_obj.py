@@ -5,7 +5,7 @@ import pytest
 from shapes import KINDS, assert_sound, edges, pattern, rims
 
 from polyfold.errors import GarmentError
-from polyfold.garments import load_obj
+from polyfold.garments._obj import load_obj
 
 
 def worn_pants(garment):

@@ -7,7 +7,8 @@ from polyfold_standard.segmenter import ColourThreshold
 from shapes import KINDS
 
 from polyfold.errors import GarmentError, GroundingError
-from polyfold.garments import find_cloth, load_mask, load_outline, outline_from_photo
+from polyfold.garments import find_cloth
+from polyfold.garments._outline_files import load_mask, load_outline, outline_from_photo
 from polyfold.geometry import Camera, fill_polygon, iou, rotate
 from polyfold.types import Observation
 

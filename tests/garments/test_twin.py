@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from shapes import KINDS, assert_sound, pattern, rims
 
 from polyfold.errors import GarmentError
-from polyfold.garments import twin_from_outline
+from polyfold.garments._twin import twin_from_outline
 from polyfold.geometry import fill_polygon, iou, polygon_area, rotate
 
 SAMPLE = [json.loads(line) for line in (Path(__file__).parents[1] / "data" / "artf_sample.jsonl").open()]

@@ -4,8 +4,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from polyfold import geometry
 from polyfold.geometry import FoldLine
-from polyfold.geometry import _plane as geometry
 
 coordinate = st.floats(-500, 500, allow_nan=False).map(lambda value: round(value, 3))
 point = st.tuples(coordinate, coordinate)

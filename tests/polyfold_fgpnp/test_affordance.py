@@ -5,17 +5,9 @@ import pytest
 from drawn_scenes import CENTRE, SQUARE, TSHIRT, model_of, near, scene_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from polyfold_fgpnp.policies.affordance import (
-    GAP_PX,
-    PickConfig,
-    best_pair,
-    coupled_pick,
-    fold_region,
-    quadrilateral_area,
-    second_pick,
-    slide,
-    to_action,
-)
+from polyfold_fgpnp.policies.actions import PickConfig, to_action
+from polyfold_fgpnp.policies.affordance import GAP_PX, best_pair, coupled_pick, quadrilateral_area, second_pick, slide
+from polyfold_fgpnp.policies.region import fold_region
 from shapely import MultiPoint
 
 from polyfold.errors import PlanError

@@ -11,9 +11,11 @@ from polyfold_fgpnp.data.collect import collect
 from polyfold_fgpnp.data.dataset import DatasetFolder, load_dataset
 from polyfold_fgpnp.data.interaction import execute, explore
 from polyfold_fgpnp.data.trials import RECIPES, Flap, draw_trials, parse_mix
-from polyfold_fgpnp.policies.affordance import PickConfig, coupled_pick, fold_region
+from polyfold_fgpnp.policies.actions import PickConfig
+from polyfold_fgpnp.policies.affordance import coupled_pick
 from polyfold_fgpnp.policies.learned import CoupledActionMap
 from polyfold_fgpnp.policies.networks import NetworkConfig, ValueNetwork
+from polyfold_fgpnp.policies.region import fold_region
 from polyfold_fgpnp.policies.weights import Provenance, save_weights
 from polyfold_fgpnp.training.examples import make_examples
 

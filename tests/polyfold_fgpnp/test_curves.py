@@ -7,13 +7,15 @@ from fnmatch import fnmatch
 import numpy as np
 import pytest
 from polyfold_fgpnp.studies import curves
-from polyfold_fgpnp.studies.curves import Scores, sizes_table, training_table
-from polyfold_fgpnp.training.runs import Learned, few_tasks, learned, read_run
+from polyfold_fgpnp.studies.curve_tables import sizes_table, training_table
+from polyfold_fgpnp.studies.scores import Scores
+from polyfold_fgpnp.studies.variants import Learned, few_tasks, learned
+from polyfold_fgpnp.training.runs import read_run
 
 from polyfold.analysis import open_results
 from polyfold.errors import ConfigError
 from polyfold.evaluation import suite
-from polyfold.logs import RunDirectory
+from polyfold.logs import MetricRecord, RunDirectory, StudyEpisodeRecord
 from polyfold.studies import Study, load
 
 EPOCHS = 4
@@ -41,14 +43,46 @@ def training(folder, seed, folds=None, data_folds=10000, snapshots=(2, 4)):
 
 def evaluated(folder, study, wins, garments=(0, 1, 2, 3)):
     """A run directory in which ``wins`` (variant, kind, garment seed) says what succeeds."""
-    run = RunDirectory(folder, {"study": Study(**study).model_dump(mode="json")})
+    run = run_directory(folder, study)
     for variant, task, seed in itertools.product(study["variants"], study["tasks"], garments):
-        kind = task.partition("-")[0]
-        record = {"variant": variant, "task": task, "garment": kind, "garment_seed": seed, "wording": 0}
-        won = bool(wins(variant, kind, seed))
-        record |= {"success": {"polyfold": won}, "metrics": {"moved-part": 5.0 if won else 50.0}}
-        run.append(f"{variant}/{task}/{seed}/0", record)
+        run.append(record(variant, task, seed, bool(wins(variant, task.partition("-")[0], seed))))
     return folder
+
+
+def run_directory(folder, study):
+    metrics = {"moved-part": MetricRecord(label="moved part", unit="mm", digits=1, higher_is_better=False)}
+    asked = {"study": Study(**study).model_dump(mode="json")}
+    return RunDirectory(folder, asked, StudyEpisodeRecord, metrics=metrics, criteria={"lenient": ()})
+
+
+def record(variant, task, seed, won):
+    kind = task.partition("-")[0]
+    return StudyEpisodeRecord(
+        key=f"{variant}/{task}/{seed}/0",
+        variant=variant,
+        task=task,
+        type="T-Half",
+        split=None,
+        steps_wanted=1,
+        wording=0,
+        instruction=f"Do {task}.",
+        garment={"kind": kind, "name": f"{kind}-{seed:04d}", "seed": seed, "size_m": 0.4, "particles": 500},
+        pose_seed=0,
+        agent_seed=0,
+        agent="oracle",
+        privileged=True,
+        subgoals=(),
+        steps=(),
+        failure=None,
+        seconds={},
+        started=None,
+        finished=None,
+        processor=None,
+        metrics={"moved-part": 5.0 if won else 50.0},
+        success={"lenient": won},
+        cause=None if won else "policy",
+        peak_memory_mb=None,
+    )
 
 
 def study(points):
@@ -149,14 +183,14 @@ def test_data_sizes_are_compared_after_the_last_epoch(tmp_path, capsys):
     run = training(tmp_path / "s0", 0)
     assert curves.main(["training", str(run), "--evaluation", str(out)]) == 1
     assert "several data sizes" in capsys.readouterr().err
+    assert curves.main(["sizes", str(out), "--score", "moved-prt"]) == 1
+    assert "did you mean 'moved-part'" in capsys.readouterr().err
 
 
 def test_only_episodes_count_that_every_variant_has(tmp_path):
     made = study([Learned(10000, 0, 4)])
     out = evaluated(tmp_path / "evaluation", made, lambda variant, kind, seed: seed == 0, garments=(0,))
-    run = RunDirectory(out, {"study": Study(**made).model_dump(mode="json")})
-    ahead = {"variant": "caso", "task": TASKS[0], "garment": "square", "garment_seed": 1, "wording": 0}
-    run.append("ahead", {**ahead, "success": {"polyfold": False}})
+    run_directory(out, made).append(record("caso", TASKS[0], 1, False))
     found = Scores(open_results(out))
     assert len(found.episodes) == 2
     assert found.mean("caso") == 100.0

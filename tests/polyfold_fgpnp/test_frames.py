@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from drawn_scenes import CENTRE, TSHIRT, model_of, scene_of
-from polyfold_fgpnp.policies.affordance import fold_region
 from polyfold_fgpnp.policies.frames import CANONICAL_SIDE, view
+from polyfold_fgpnp.policies.region import fold_region
 
 from polyfold.geometry import FoldLine, iou, rotate
 

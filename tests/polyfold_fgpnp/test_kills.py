@@ -13,7 +13,7 @@ from polyfold_fgpnp.data.collect import collect
 from polyfold_fgpnp.data.dataset import load_dataset
 from polyfold_fgpnp.data.interaction import Interaction
 from polyfold_fgpnp.policies.weights import load_weights
-from polyfold_fgpnp.training.train import read_config
+from polyfold_fgpnp.training.config import read_config
 from polyfold_fgpnp.training.training import train
 
 INTERACTION = Interaction(seeds=(2000, 2001), edge_length=0.05, mix={"uniform": 1})

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drawn_scenes import SQUARE, TSHIRT, model_of, scene_of
 from polyfold_fgpnp.data.outcomes import contour_reward, expect, particle_reward
-from polyfold_fgpnp.policies.affordance import fold_region
+from polyfold_fgpnp.policies.region import fold_region
 
 from polyfold.geometry import Camera, FoldLine
 from polyfold.types import SimState

@@ -12,15 +12,17 @@ from drawn_scenes import SQUARE, TSHIRT, model_of, scene_of
 from few_folds import MIX
 from polyfold_fgpnp.data.dataset import load_dataset
 from polyfold_fgpnp.policies import weights as weights_module
-from polyfold_fgpnp.policies.affordance import fold_region
 from polyfold_fgpnp.policies.learned import CoupledActionMap, OneActionMap, PairValue, TwoActionMaps, VertexLearned
 from polyfold_fgpnp.policies.networks import NetworkConfig, ValueNetwork
 from polyfold_fgpnp.policies.pairs import pair_geometry
+from polyfold_fgpnp.policies.region import fold_region
 from polyfold_fgpnp.policies.weights import load_weights, shipped_weights
-from polyfold_fgpnp.training import training
+from polyfold_fgpnp.training import learner
+from polyfold_fgpnp.training.augmentation import augmented
+from polyfold_fgpnp.training.config import TrainingConfig, read_config
 from polyfold_fgpnp.training.examples import TRIALS_OF, label, make_examples
-from polyfold_fgpnp.training.train import read_config
-from polyfold_fgpnp.training.training import TrainingConfig, augmented, train
+from polyfold_fgpnp.training.learner import Learner
+from polyfold_fgpnp.training.training import train
 
 from polyfold import plugins
 from polyfold.cli import main
@@ -80,7 +82,7 @@ def test_pictures_of_any_size_get_a_map_of_their_size(frame):
 
 
 def test_a_training_that_was_killed_ends_in_the_same_weights(folds_folder, tmp_path, monkeypatch, weights):
-    save = training._Run.save
+    save = Learner.save
 
     def save_and_die(run, path, epoch):
         save(run, path, epoch)
@@ -88,7 +90,7 @@ def test_a_training_that_was_killed_ends_in_the_same_weights(folds_folder, tmp_p
             raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(training._Run, "save", save_and_die)
+        patch.setattr(Learner, "save", save_and_die)
         with pytest.raises(KeyboardInterrupt):
             train(small(folds_folder), tmp_path, "cpu", progress=False)
     again = train(small(folds_folder), tmp_path, "cpu", progress=False)
@@ -98,7 +100,7 @@ def test_a_training_that_was_killed_ends_in_the_same_weights(folds_folder, tmp_p
 
 
 def test_snapshots_are_the_weights_so_far_and_change_nothing_else(folds_folder, tmp_path, monkeypatch, weights):
-    save = training._Run.save
+    save = Learner.save
 
     def die_before_saving(run, path, epoch):
         if epoch == 2:
@@ -107,7 +109,7 @@ def test_snapshots_are_the_weights_so_far_and_change_nothing_else(folds_folder, 
 
     config = small(folds_folder, snapshots=(2, 3))
     with monkeypatch.context() as patch:
-        patch.setattr(training._Run, "save", die_before_saving)
+        patch.setattr(Learner, "save", die_before_saving)
         with pytest.raises(KeyboardInterrupt):
             train(config, tmp_path, "cpu", progress=False)
     again = train(config, tmp_path, "cpu", progress=False)
@@ -130,7 +132,7 @@ def test_a_folder_with_another_training_is_refused(folds_folder, weights):
 
 
 def test_a_collapsed_network_stops_the_training(folds_folder, tmp_path, monkeypatch):
-    monkeypatch.setattr(training, "GUARD_STEPS", 1)
+    monkeypatch.setattr(learner, "GUARD_STEPS", 1)
     with pytest.raises(ConfigError, match="collapsed"):
         train(small(folds_folder, learning_rate=1e-9), tmp_path, "cpu", progress=False)
 
@@ -204,7 +206,7 @@ def shipping(weights, tmp_path, monkeypatch):
     (package / "weights").mkdir(parents=True)
     for name in ("csam", "csam-fine"):
         shutil.copy(weights["csam"], package / "weights" / f"{name}.safetensors")
-    monkeypatch.setattr(weights_module, "__file__", str(package / "weights.py"))
+    monkeypatch.setattr(weights_module, "__file__", str(package / "policies" / "weights.py"))
     return package / "weights"
 
 
@@ -253,11 +255,11 @@ def test_weights_are_in_the_wheel_and_in_the_source_distribution(weights, tmp_pa
         shutil.copy(repository / name, tmp_path)
     there = "plugins/polyfold_fgpnp"
     (tmp_path / there / "weights").mkdir(parents=True)
-    shutil.copy(repository / there / "weights.py", tmp_path / there)
+    shutil.copy(repository / there / "hooks.py", tmp_path / there)
     shutil.copy(weights["csam"], tmp_path / there / "weights" / "csam.safetensors")
     for builder, inside in ((WheelBuilder, "polyfold_fgpnp"), (SdistBuilder, there)):
         found = {file.distribution_path for file in builder(str(tmp_path)).recurse_included_files()}
-        assert {f"{inside}/weights.py", f"{inside}/weights/csam.safetensors"} <= found
+        assert {f"{inside}/hooks.py", f"{inside}/weights/csam.safetensors"} <= found
 
 
 def test_labels_keep_the_order_and_the_logarithm_spreads_good_folds():

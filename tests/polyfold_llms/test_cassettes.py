@@ -9,12 +9,13 @@ import subprocess
 import sys
 
 import pytest
-from polyfold_llms.requests import difference, request_of
+from polyfold_llms.request_keys import describe_difference, normalized_request
 
-from experiments.benchmarks.language.language import laid_garment, plan_ideally
+from experiments.benchmarks.language.understanding import laid_garment, plan_ideally
 from polyfold.api import run
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError, LLMError
+from polyfold.logs import accounts, transcript_lines
 from polyfold.plugins import create
 from polyfold.prompts import load_prompt
 from polyfold.rollout import Transcript, request_place
@@ -53,7 +54,7 @@ def test_a_replay_decides_as_the_recording_did_and_says_that_it_is_one(cassette)
         SENTENCE, laid_garment("tshirt", 2001), create("planners", "hierarchical"), conversation_llm(conversation)
     )
     assert replayed == recorded
-    assert conversation.accounts()["any"]["origins"] == ["recorded"]
+    assert accounts(conversation.calls)["any"].origins == ("recorded",)
 
 
 def conversation_llm(conversation):
@@ -190,7 +191,7 @@ def test_pictures_are_kept_as_hash_and_length(cassette, tmp_path):
     ]
     transcript = Transcript(create("llms", f"record:{cassette}"))
     transcript.ask("r", messages)
-    transcript.write(tmp_path / "transcript.jsonl")
+    (tmp_path / "transcript.jsonl").write_text(transcript_lines(transcript.calls))
     for path in (cassette, tmp_path / "transcript.jsonl"):
         assert "AAAA" not in path.read_text()
         assert '"sha256"' in path.read_text()
@@ -252,10 +253,10 @@ def test_several_models_on_one_cassette_must_be_told_apart(cassette):
     create("llms", f"record:{cassette}").complete(messages, {})
     entry = lines_of(cassette)[0]
     from polyfold_llms.cassette import append_line
-    from polyfold_llms.requests import key_of
+    from polyfold_llms.request_keys import request_key
 
-    request = request_of("other", messages, {}, 0)
-    append_line(cassette, {**entry, "request": request, "key": key_of(request)})
+    request = normalized_request("other", messages, {}, 0)
+    append_line(cassette, {**entry, "request": request, "key": request_key(request)})
     with pytest.raises(ConfigError, match="it holds rules, other"):
         create("llms", f"replay:{cassette}")
     assert create("llms", f"replay:{cassette}", {"model": "other"}).complete(messages, {}).text
@@ -267,10 +268,10 @@ def test_a_missing_cassette_is_reported_before_anything_is_folded(tmp_path):
 
 
 def test_a_difference_names_settings_and_the_number_of_messages():
-    a = request_of("m", [{"role": "user", "content": "a"}], {}, 0)
-    b = request_of("n", [{"role": "user", "content": "a"}, {"role": "user", "content": "b"}], {}, 1)
+    a = normalized_request("m", [{"role": "user", "content": "a"}], {}, 0)
+    b = normalized_request("n", [{"role": "user", "content": "a"}, {"role": "user", "content": "b"}], {}, 1)
     assert (
-        difference(a, b)
+        describe_difference(a, b)
         == "model: recorded 'm', asked 'n'; sample: recorded 0, asked 1; recorded are 1 messages, asked 2"
     )
 
@@ -304,7 +305,7 @@ def test_a_study_is_filled_in_round_by_round_from_another_program(cassette, tmp_
     )
     for _ in range(3):
         records = run(study, tmp_path / "run", progress=False).records
-        if not any(record["cause"] == "infrastructure" for record in records):
+        if not any(record.cause == "infrastructure" for record in records):
             break
         assert cli("cassette", "missing", requests, "--form", form, "--out", batch)[0] == 0
         exported = lines_of(batch)
@@ -312,7 +313,7 @@ def test_a_study_is_filled_in_round_by_round_from_another_program(cassette, tmp_
         answers.write_text("\n".join(json.dumps(answered(form, line)) for line in exported))
         status, out = cli("cassette", "fill", cassette, requests, "--answers", answers)
         assert (status, "0 requests are still missing" in out) == (0, True), out
-    assert [record["failure"] for record in records] == [None, None]
+    assert [record.failure for record in records] == [None, None]
     assert len(lines_of(cassette)) == 4
     status, out = cli("cassette", "show", cassette, "--json")
     summary = json.loads(out)

@@ -11,9 +11,9 @@ import sys
 
 import pytest
 from loopback_server import FAKE_KEY, GOOD, ROUTES, Script, error, said
-from polyfold_llms.keys import contains_secret, scrub
-from polyfold_llms.models import models
-from polyfold_rules.rules import RulesLLM
+from polyfold_llms import models
+from polyfold_llms.redaction import contains_secret, redact
+from polyfold_rules import RulesLLM
 
 from experiments.benchmarks.language.loopback import Sent, answering, completion, serve
 from polyfold.api import run
@@ -55,7 +55,7 @@ def test_a_missing_key_is_reported_before_anything_is_folded_and_litellm_stays_o
     ("name", "hint"),
     [
         ("gpt-4o", "openai/gpt-4o"),
-        ("openai/gpt-4oo", "near names are openai/gpt-4o"),
+        ("openai/gpt-4oo", "did you mean 'openai/gpt-4o'"),
         ("nobody/gpt-4o", "no route 'nobody'"),
         ("openrouter/openai/gpt-40", "openrouter/openai/gpt-4o"),
     ],
@@ -177,7 +177,7 @@ def test_the_table_has_the_paper_s_models_with_dated_prices():
     assert len(models("current")) >= 5
     for model in models():
         assert model.price is None or (
-            model.price.input > 0 and model.price.read.startswith("20") and model.price.source
+            model.price.input > 0 and model.price.as_of.startswith("20") and model.price.source
         )
     assert paper["gpt-3.5"].vision is False
 
@@ -237,14 +237,14 @@ def test_a_study_with_a_key_leaves_it_nowhere_on_disk(server, tmp_path):
     server.script = lambda request: error(400, f"bad request by {request.headers['Authorization']}")
     study = study_of(server, "echo", key_env="OPENROUTER_API_KEY")
     records = run(study, tmp_path / "run", progress=False).records
-    assert ["bad request by" in record["failure"]["reason"] for record in records] == [True, True]
+    assert ["bad request by" in record.failure.reason for record in records] == [True, True]
     assert len(server.received) == 2
     assert files_with(FAKE_KEY[:18], tmp_path) == []
 
 
 def test_secrets_are_recognised_by_value_and_by_form(monkeypatch):
     monkeypatch.setenv("MY_SERVICE_TOKEN", "correct-horse-battery")
-    assert scrub("a correct-horse-battery b") == "a [hidden] b"
+    assert redact("a correct-horse-battery b") == "a [hidden] b"
     for key in ("sk-ant-api03-" + "x" * 30, "AIza" + "b" * 35, "AKIA" + "A" * 16, "gsk_" + "c" * 40):
         assert contains_secret(f"key={key}.")
     for harmless in ("fold the task-oriented-risk-assessment-sheet", "sha256 " + "0f" * 32, "half_" + "a" * 40):
@@ -262,8 +262,8 @@ def test_faults_lose_no_finished_episode_and_are_tried_again(server, tmp_path):
     study = study_of(server, "faults")
     server.script = lambda request: healthy(request) if len(server.received) <= 2 else error(500)
     first, second = run(study, tmp_path / "run", progress=False).records
-    assert first["failure"] is None
-    assert (second["failure"]["stage"], second["cause"]) == ("unanswered", "infrastructure")
+    assert first.failure is None
+    assert (second.failure.stage, second.cause) == ("unanswered", "infrastructure")
     server.script = lambda request: error(401)
     with pytest.raises(LLMAccessError):
         run(study, tmp_path / "run", progress=False)
@@ -271,13 +271,13 @@ def test_faults_lose_no_finished_episode_and_are_tried_again(server, tmp_path):
     server.script = healthy
     again = run(study, tmp_path / "run", progress=False).records
     assert again[0] == first
-    assert [record["failure"] for record in again] == [None, None]
+    assert [record.failure for record in again] == [None, None]
 
 
 def test_the_default_never_imports_litellm():
     code = (
         "import sys, polyfold; from polyfold.plugins import create, names; names('llms'); create('llms', 'rules'); "
-        "import polyfold_llms.litellm_backend, polyfold_llms.recording, polyfold_llms.loopback; "
+        "import polyfold_llms.litellm_backend, polyfold_llms.recording; "
         "sys.exit('litellm' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -6,11 +6,12 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from loopback_server import ACCESS, FAKE_KEY, FAULTS, GOOD, REFUSED_REQUESTS, ROUTES, Script, error, line, said
-from polyfold_llms.transport import Patience, TransportError, call
+from polyfold_llms.retries import RetryPolicy, TransportError, call_with_retries
 
-from experiments.benchmarks.language.language import laid_garment, plan_ideally
 from experiments.benchmarks.language.loopback import serve
+from experiments.benchmarks.language.understanding import laid_garment, plan_ideally
 from polyfold.errors import ConfigError, LLMAccessError, LLMError, PlanError, RefusedError
+from polyfold.logs import accounts
 from polyfold.plugins import create
 from polyfold.rollout import Transcript
 
@@ -94,14 +95,14 @@ def test_waits_double_with_jitter_and_never_exceed_a_minute():
 
     pauses = []
     with pytest.raises(LLMError, match="4 tries"):
-        call(attempt, Patience(), "the model", sleep=pauses.append)
+        call_with_retries(attempt, RetryPolicy(), "the model", sleep=pauses.append)
     assert len(pauses) == 3
     for number, pause in enumerate(pauses):
         assert 0.5 * 2**number <= pause <= 1.5 * 2**number
     for asked in ("86400", "Fri, 31 Dec 2100 23:59:59 GMT"):
-        assert Patience().wait(1, TransportError(429, "", asked)) == 60.0
-    assert Patience().wait(1, TransportError(429, "", "Fri, 31 Dec 1999 23:59:59 GMT")) == 0.0
-    assert Patience().wait(1, TransportError(429, "", "soon")) <= 1.5
+        assert RetryPolicy().wait_s(1, TransportError(429, "", asked)) == 60.0
+    assert RetryPolicy().wait_s(1, TransportError(429, "", "Fri, 31 Dec 1999 23:59:59 GMT")) == 0.0
+    assert RetryPolicy().wait_s(1, TransportError(429, "", "soon")) <= 1.5
 
 
 def planned(llm, role):
@@ -125,8 +126,8 @@ def test_an_unusable_answer_goes_back_to_the_model_with_the_reason(model, server
     assert len(server.received) == 2
     assert "can't be used" in server.received[1].body["messages"][-1]["content"]
     assert all(message["content"] for message in server.received[1].body["messages"])
-    account = conversation.accounts()["subgoals"]
-    assert (account["calls"], account["repairs"], account["tries"]) == (2, 1, 2)
+    account = accounts(conversation.calls)["subgoals"]
+    assert (account.calls, account.repairs, account.tries) == (2, 1, 2)
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,13 @@ import pytest
 from polyfold_planning.grammar import check_subgoal
 from polyfold_planning.hierarchical import HierarchicalPlanner
 
-from experiments.benchmarks.language.language import laid_garment
+from experiments.benchmarks.language.understanding import laid_garment
+from polyfold.config import Experiment
 from polyfold.errors import PlanError, RefusedError
 from polyfold.geometry import fill_polygon
+from polyfold.logs import fingerprint
 from polyfold.plugins import create
+from polyfold.prompts import load_prompt
 from polyfold.rollout import Transcript
 from polyfold.types import Reply, Scene, Subgoal
 
@@ -64,7 +67,7 @@ def test_an_invalid_line_goes_back_with_the_reason(bad, words):
     assert found.start == (200.0, 60.0)
     assert words in conversation.calls[1].messages[-1]["content"]
     assert conversation.calls[1].messages[-2]["role"] == "assistant"
-    assert [entry["attempt"] for entry in conversation.calls] == [1, 2]
+    assert [call.attempt for call in conversation.calls] == [1, 2]
 
 
 def test_three_invalid_answers_end_it():
@@ -110,9 +113,19 @@ def test_parameters_reach_the_model_over_the_prompts_own():
     assert "max_tokens" in conversation.calls[0].params
 
 
-def test_prompts_are_named_with_their_hashes():
-    prompts = HierarchicalPlanner().prompts
-    assert set(prompts) == {"subgoals@v1", "fold_line@v1"}
+@pytest.mark.parametrize(
+    ("planner", "prompts"),
+    [
+        ("hierarchical", {"subgoals@v1", "fold_line@v1", "fold_line@keypoints-v1", "fold_line@image-v1"}),
+        ("direct-2arm", {"subgoals@v1", "direct_2arm@v1", "direct_2arm@keypoints-v1"}),
+        ("zero-shot-vlm", {"zero_shot@v1"}),
+    ],
+)
+def test_a_run_depends_on_the_prompts_that_its_planner_may_use(planner, prompts):
+    found = fingerprint([Experiment(planner=planner)]).prompts
+    assert prompts <= set(found)
+    assert {name.partition("@")[0] for name in found} == {name.partition("@")[0] for name in prompts}
+    assert found[min(prompts)] == load_prompt(*min(prompts).split("@")).sha256
 
 
 @pytest.mark.parametrize(

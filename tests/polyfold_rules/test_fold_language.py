@@ -16,13 +16,14 @@ from polyfold_rules.shapes.folds import CORNERS, EDGES, OPPOSITE_CORNER, Fold, s
 from polyfold_rules.shapes.parts import Garment, NotUnderstoodError
 from polyfold_rules.wishes.instruction import plan
 
-from experiments.benchmarks.language.language import accepted, judge_set, laid_garment, part_of_set, plan_ideally
+from experiments.benchmarks.language.understanding import accepted, judge_set, laid_garment, part_of_set, plan_ideally
 from polyfold.errors import RefusedError
 from polyfold.geometry import fill_polygon
 from polyfold.plugins import create, find
 from polyfold.prompts import load_prompt
 from polyfold.rollout import Transcript
-from polyfold.tasks import OpenTask, load_suite, measure
+from polyfold.tasks import OpenTask, load_suite
+from polyfold.tasks._goals import measure
 
 FAMILIES = {"square": "quad", "rectangle": "quad", "tshirt": "tshirt", "pants": "pants"}
 CONTENT = tomllib.loads((Path(__file__).parent / "phrasings.toml").read_text("utf-8"))

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from experiments.benchmarks.language.language import folded_states, laid_garment
+from experiments.benchmarks.language.understanding import folded_states, laid_garment
 from polyfold.errors import RefusedError
 from polyfold.geometry import fill_polygon
 from polyfold.plugins import create, find

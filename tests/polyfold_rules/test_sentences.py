@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from experiments.benchmarks.language.language import main, part_of_set
+from experiments.benchmarks.language.understanding import main, part_of_set
 from polyfold.tasks import load_suite
 
 CONTENT = tomllib.loads(Path(__file__).with_name("sentences.toml").read_text("utf-8"))

@@ -9,7 +9,8 @@ import pytest
 from laid_flat import SUITE
 
 from polyfold.evaluation import accepted_tasks, known_tasks, suite
-from polyfold.tasks import OpenTask, measure
+from polyfold.tasks import OpenTask
+from polyfold.tasks._goals import measure
 
 GOALS = suite("ambiguous").goals
 goals = pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.id)

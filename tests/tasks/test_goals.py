@@ -15,7 +15,8 @@ from polyfold.errors import ConfigError
 from polyfold.evaluation import Reference, reference_for, suite
 from polyfold.geometry import fill_polygon, rotate
 from polyfold.studies import cells, evaluate_cell
-from polyfold.tasks import Bounds, load_suite, measure
+from polyfold.tasks import load_suite
+from polyfold.tasks._goals import Bounds, measure
 from polyfold.viz.report import report_html
 
 SIZE = 400
@@ -165,21 +166,37 @@ class TestFile:
         assert found.entry("smaller").instructions == ("Make it smaller.",)
         with pytest.raises(ConfigError, match="no task 'smaller'"):
             found.task("smaller")
-        with pytest.raises(ConfigError, match="did you mean smaller"):
+        with pytest.raises(ConfigError, match="did you mean 'smaller'"):
             found.entry("smalle")
 
     @pytest.mark.parametrize(
         ("old", "new", "words"),
         [
-            ("area_max", "area", r"goal smaller, field done\.area: Extra inputs"),
-            ("area_max = 0.6", "area_max = 60", r"goal smaller, field done\.area_max"),
-            ("area_max = 0.6", "area_max = 0.6, area_min = 0.7", r"goal smaller, field done: area_min 0.7 is above"),
-            ("area_max = 0.6", "steps_max = 1, steps_min = 2", r"goal smaller, field done: steps_min 2 is above"),
-            ("{ area_max = 0.6 }", "{}", "goal smaller, field done: it has no bound"),
-            ('text = "Make it smaller."', "", "goal smaller, field text: Field required"),
-            ('id = "smaller"', "", "goal number 1, field id"),
-            ('["square-corners-all"]', '["a", "a"]', "goal smaller, field accept: the task 'a' is named twice"),
-            ('accept = ["square-corners-all"]\ndone = { area_max = 0.6 }', "", "goal smaller, .*nothing counts"),
+            ("area_max", "area", r"goal smaller has no setting 'done\.area'"),
+            ("area_max = 0.6", "area_max = 60", r"goal smaller has a bad value for 'done\.area_max'"),
+            (
+                "area_max = 0.6",
+                "area_max = 0.6, area_min = 0.7",
+                r"goal smaller has a bad value for 'done': area_min 0.7 is above",
+            ),
+            (
+                "area_max = 0.6",
+                "steps_max = 1, steps_min = 2",
+                r"goal smaller has a bad value for 'done': steps_min 2 is above",
+            ),
+            ("{ area_max = 0.6 }", "{}", "goal smaller has a bad value for 'done': it has no bound"),
+            ('text = "Make it smaller."', "", "goal smaller has no 'text'; add it"),
+            ('id = "smaller"', "", "goal number 1 has no 'id'; add it"),
+            (
+                '["square-corners-all"]',
+                '["a", "a"]',
+                "goal smaller has a bad value for 'accept': the task 'a' is named twice",
+            ),
+            (
+                'accept = ["square-corners-all"]\ndone = { area_max = 0.6 }',
+                "",
+                "goal smaller can't be used: nothing counts",
+            ),
             (VALID[VALID.index("[[goal]]") :], "", "the suite is empty"),
             ('id = "smaller"', 'id = "diagonal"', "the id 'diagonal' is used twice"),
         ],
@@ -193,7 +210,7 @@ class TestFile:
     @pytest.mark.parametrize(
         ("old", "new", "words"),
         [
-            ("square-corners-all", "square-corners-al", "field accept: .*did you mean square-corners-all"),
+            ("square-corners-all", "square-corners-al", "field accept: .*did you mean 'square-corners-all'"),
             ("square-corners-all", "tshirt-half-hem", "field accept: tshirt-half-hem is for a tshirt"),
             ('name = "mine"', 'name = "mine"\naccept_from = "polyfold7"', "field accept: .*polyfold7.*accept_from"),
         ],

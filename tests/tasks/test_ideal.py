@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from laid_flat import KINDS, SUITE, lay
 
 from polyfold.geometry import FoldLine, fill_polygon, iou
-from polyfold.tasks import fidelity, fold_ideally, fold_lines
-from polyfold.tasks._ideal import LAYER_THICKNESS
+from polyfold.tasks import fold_ideally, fold_lines
+from polyfold.tasks._ideal import LAYER_THICKNESS, fidelity, fold_step_by_step
 from polyfold.types import SimState
 
 pixel = st.floats(60, 340)
@@ -68,6 +68,17 @@ def test_every_task_makes_the_garment_smaller_and_higher(task):
     assert ideal.layer.max() >= 2 * garment.mesh.layers - 1
     assert ideal.layer.max() <= garment.mesh.layers * 2 ** len(lines) - 1
     assert abs(ideal.mask.sum() / ideal.area - 1) < 0.12, "the mask is the area, seen a little nearer"
+
+
+def test_step_by_step_gives_the_ideal_of_every_prefix():
+    garment, state = lay("tshirt", 2008, 12)
+    lines = fold_lines(SUITE.task("tshirt-block-left-first"), state.keypoint_pixels())
+    for count, ideal in enumerate(fold_step_by_step(state, garment.mesh, lines), start=1):
+        prefix = fold_ideally(state, garment.mesh, lines[:count])
+        np.testing.assert_array_equal(ideal.positions, prefix.positions)
+        np.testing.assert_array_equal(ideal.layer, prefix.layer)
+        np.testing.assert_array_equal(ideal.mask, prefix.mask)
+        assert ideal.area == prefix.area
 
 
 def test_half_and_half_again_leaves_a_quarter_in_four_layers():

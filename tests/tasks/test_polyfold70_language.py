@@ -57,7 +57,7 @@ def test_split_is_optional_but_checked(tmp_path) -> None:
     path.write_text(text)
     assert load_suite(path).tasks[0].split is None
     path.write_text(text + 'split = "hidden"\n')
-    with pytest.raises(ConfigError, match="task a, field split"):
+    with pytest.raises(ConfigError, match="task a has a bad value for 'split'"):
         load_suite(path)
 
 

@@ -9,7 +9,8 @@ from laid_flat import SUITE, lay
 
 from polyfold.errors import ConfigError
 from polyfold.geometry import FoldLine, rotate
-from polyfold.tasks import fold_lines, load_suite, mirror_line, recognise
+from polyfold.tasks import fold_lines, load_suite, mirror_line
+from polyfold.tasks._lines import recognise
 
 coordinate = st.floats(0, 400)
 point = st.tuples(coordinate, coordinate)
@@ -201,14 +202,14 @@ class TestFile:
     @pytest.mark.parametrize(
         ("old", "new", "words"),
         [
-            ("pairs", "pears", r"mine\.toml: task fold-it, field steps\.0\.pears: Extra inputs"),
-            ("[[\"top_left\", \"center\"]]", "[]", r"task fold-it, field steps\.0\.pairs"),
+            ("pairs", "pears", r"mine\.toml: task fold-it has no setting 'steps\.0\.pears'"),
+            ("[[\"top_left\", \"center\"]]", "[]", r"task fold-it has a bad value for 'steps\.0\.pairs'"),
             ("bottom_left = 0.5", "bottom_left = 0.9", "weights of a point must sum to 1"),
-            ('type = "Own"', "", "task fold-it, field type: Field required"),
-            ('id = "fold-it"', 'id = "Fold It!"', "task Fold It!, field id"),
+            ('type = "Own"', "", "task fold-it has no 'type'; add it"),
+            ('id = "fold-it"', 'id = "Fold It!"', "task Fold It! has a bad value for 'id'"),
             ("pairs = [[\"top_left\", \"center\"]]", 'crease = ["top_left", "center"]', "exactly one of the two"),
-            ("schema_version = 1", "schema_version = 2", "field schema_version"),
-            ("steps = [", "steps = 3 #", "task fold-it, field steps"),
+            ("schema_version = 1", "schema_version = 2", "the suite has a bad value for 'schema_version'"),
+            ("steps = [", "steps = 3 #", "task fold-it has a bad value for 'steps'"),
             ("name = \"mine\"", "name = ", "not valid TOML"),
         ],
     )  # fmt: skip

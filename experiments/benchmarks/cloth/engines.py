@@ -1,4 +1,4 @@
-"""The same half fold in our simulator and in other engines: ``python -m polyfold.benchmark.engines``.
+"""The same half fold in our simulator and in other engines: ``python -m experiments.benchmarks.cloth.engines``.
 
 Needs PyBullet and ``pip install newton``; an engine that isn't installed is skipped. Times are processor seconds per
 fold, loading and compiling left out. The other engines get plain settings, not tuned ones: one that explodes or
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from experiments.benchmarks.cloth.folding import Fold, Script, Trial, mask_of
 from polyfold import plugins
 from polyfold.garments import Garment
-from polyfold.geometry import _plane as geometry
+from polyfold.geometry import iou
 from polyfold.types import Action, SimState
 
 Floats = NDArray[np.float64]
@@ -86,7 +86,7 @@ class Job:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run every engine that is installed on both garments."""
-    parser = argparse.ArgumentParser(prog="python -m polyfold.benchmark.engines", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m experiments.benchmarks.cloth.engines", description=__doc__)
     parser.add_argument("--seed", type=int, default=2000, help="garment seed (default 2000)")
     parser.add_argument("--edge-length", type=float, default=0.0155, help="edge length of the mesh [m]")
     options = parser.parse_args(arguments)
@@ -165,7 +165,7 @@ def _report(
     triangles, camera = garment.mesh.triangles, state.camera
     if np.isfinite(state.positions).all() and np.abs(state.positions).max() < 10:
         mask = mask_of(camera.to_pixels(state.positions), triangles, (camera.height, camera.width))
-        overlap = f"{geometry.iou(mask, trial.ideal_mask(triangles)):.3f}"
+        overlap = f"{iou(mask, trial.ideal_mask(triangles)):.3f}"
         error = f"{1000 * trial.flap_error(state)[0]:.0f} mm"
     else:
         overlap, error = "exploded", "-"
@@ -192,10 +192,10 @@ def _job(garment: Garment, flat: SimState, action: Action) -> Job:
 
 def _newton(job: Job) -> tuple[Floats, float]:
     """Newton's particle solver on the CPU, 20 substeps per 1/60 s."""
-    import warp as wp
+    import warp as wp  # pyright: ignore[reportMissingImports]  (comes with newton, which few have)
 
     wp.config.quiet = True  # before newton, which starts warp
-    import newton
+    import newton  # pyright: ignore[reportMissingImports]  (as above)
 
     radius, substeps, frame = 0.005, 20, 1 / 60
     # Spheres of this size touch at twice the radius, so its two layers have to lie farther apart than ours.

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.garments import Garment
-from polyfold.geometry import FoldLine
-from polyfold.geometry import _plane as geometry
+from polyfold.geometry import FoldLine, contour_of
 from polyfold.types import Action, Observation, SimState
 
 Floats = NDArray[np.float64]
@@ -100,7 +99,7 @@ class Trial:
     def act(self, fold: Fold, now: SimState) -> Action:
         """The action for a fold from where the picked particles are now; moves ``ideal`` along."""
         line = self._line(fold)
-        self.ideal = np.where(line.lifts(self.ideal)[:, None], line.mirror(self.ideal), self.ideal)
+        self.ideal = line.fold(self.ideal)
         pixels = now.camera.to_pixels(now.positions)
         picks = np.array([pixels[self._particle(name)] for name in fold.picks])
         return Action(picks, np.clip(line.mirror(picks), 0, np.array(self._size)[::-1] - 1))
@@ -113,7 +112,7 @@ class Trial:
         return float(error[moved].mean()), float(error[~moved].mean()) if (~moved).any() else 0.0
 
     def ideal_mask(self, triangles: NDArray[np.int32]) -> NDArray[np.bool_]:
-        """Where the ideally folded garment would be seen, shape (H, W)."""
+        """Where the ideally folded garment, triangles of shape (T, 3), would be seen: bool, shape (H, W)."""
         return mask_of(self.ideal, triangles, self._size)
 
     def _point(self, name: str) -> Floats:
@@ -131,7 +130,7 @@ class Trial:
 
 
 def mask_of(pixels: Floats, triangles: NDArray[np.int32], size: tuple[int, int]) -> NDArray[np.bool_]:
-    """Union of triangles with corners at ``pixels``, shape (H, W)."""
+    """Union of triangles, shape (T, 3), with corners at ``pixels`` [px], shape (N, 2): bool, shape (H, W)."""
     import cv2
 
     mask = np.zeros(size, np.uint8)
@@ -141,13 +140,13 @@ def mask_of(pixels: Floats, triangles: NDArray[np.int32], size: tuple[int, int])
 
 
 def cloth_mask(observation: Observation) -> NDArray[np.bool_]:
-    """Where the depth picture shows cloth."""
+    """Where the depth picture shows cloth, bool, shape (H, W)."""
     return observation.depth < observation.camera.elevation - CLOTH_HEIGHT
 
 
 def random_action(mask: NDArray[np.bool_], rng: np.random.Generator) -> tuple[Action, FoldLine]:
     """A random fold line across the cloth; one random pick on the outline left of it, the other far from the first."""
-    outline = geometry.contour_of(mask)
+    outline = contour_of(mask)
     height, width = mask.shape
     while True:
         ends = outline[rng.choice(len(outline), 2, replace=False)]

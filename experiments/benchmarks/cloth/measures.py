@@ -17,7 +17,7 @@ def edges_of(mesh: Mesh) -> NDArray[np.int64]:
 
 
 def strain(mesh: Mesh, positions: Floats) -> Floats:
-    """Signed relative change of every edge's length, shape (E,)."""
+    """Signed relative change of every edge's length, shape (E,), for positions [m], shape (N, 3)."""
     a, b = edges_of(mesh).T
     rest = np.linalg.norm(mesh.vertices[a] - mesh.vertices[b], axis=1)
     return np.linalg.norm(positions[a] - positions[b], axis=1) / rest - 1.0
@@ -32,19 +32,19 @@ def layer_order(positions: Floats, lifted: NDArray[np.bool_], far: NDArray[np.bo
         far: which of them count (away from the crease), shape (N,).
         radius: how near a neighbour is, seen from above [m].
     """
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     counted, lower = np.flatnonzero(lifted & far), np.flatnonzero(~lifted)
     if len(counted) == 0 or len(lower) == 0:
         return float("nan")
-    neighbours = cKDTree(positions[lower, :2]).query_ball_point(positions[counted, :2], radius)
+    neighbours = KDTree(positions[lower, :2]).query_ball_point(positions[counted, :2], radius)
     right = [positions[i, 2] > positions[lower[n], 2].max() for i, n in zip(counted, neighbours, strict=True) if n]
     return float(np.mean(right)) if right else float("nan")
 
 
 def crossing_edges(mesh: Mesh, positions: Floats) -> float:
-    """Share of the mesh's edges that pierce a triangle they have no vertex in common with."""
-    from scipy.spatial import cKDTree
+    """Share of the mesh's edges that pierce a triangle they share no vertex with, at positions [m], shape (N, 3)."""
+    from scipy.spatial import KDTree
 
     edges, triangles = edges_of(mesh), np.asarray(mesh.triangles, np.int64)
     p, q = positions[edges[:, 0]], positions[edges[:, 1]]
@@ -52,7 +52,7 @@ def crossing_edges(mesh: Mesh, positions: Floats) -> float:
     centres = corners.mean(axis=1)
     spread = float(np.linalg.norm(corners - centres[:, None], axis=2).max())
     reach = spread + float(np.linalg.norm(q - p, axis=1).max()) / 2
-    near = cKDTree((p + q) / 2).query_ball_tree(cKDTree(centres), reach)
+    near = KDTree((p + q) / 2).query_ball_tree(KDTree(centres), reach)
     e = np.repeat(np.arange(len(edges)), [len(n) for n in near])
     t = np.concatenate([np.asarray(n, np.int64) for n in near])
     apart = (edges[e][:, :, None] != triangles[t][:, None, :]).all(axis=(1, 2))

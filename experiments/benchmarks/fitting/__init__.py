@@ -1,1 +1,1 @@
-"""Measurements of the polygon fit."""
+"""How well polygons are fitted; ``python -m experiments.benchmarks.fitting`` measures it."""

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from polyfold_standard.templates import shorts_template, towel_template, tshirt_template
+from tqdm import tqdm
 
-from polyfold.errors import ConfigError
-from polyfold.geometry import fill_polygon
+from polyfold.errors import ConfigError, did_you_mean
+from polyfold.geometry import Camera, fill_polygon
+from polyfold.plugins.interfaces import Grounding
 from polyfold.polygon import Template
+from polyfold.types import Observation
 
 Floats = NDArray[np.float64]
 
@@ -31,12 +34,12 @@ class Dataset:
 
     Attributes:
         file: file name.
-        template: ``package.module:function`` that returns the template.
+        template: makes the template.
         vertices: keypoint name in the file -> vertex name; empty where keypoints have no names of their own.
     """
 
     file: str
-    template: str
+    template: Callable[[], Template]
     vertices: Mapping[str, str]
 
 
@@ -60,30 +63,30 @@ def _shorts_names() -> dict[str, str]:
 
 
 DATASETS = {
-    "tshirt": Dataset("tshirts-train.jsonl", "polyfold_standard.templates:tshirt_template", _tshirt_names()),
-    "towel": Dataset("towels-train.jsonl", "polyfold_standard.templates:towel_template", {}),
-    "shorts": Dataset("shorts-train.jsonl", "polyfold_standard.templates:shorts_template", _shorts_names()),
+    "tshirt": Dataset("tshirts-train.jsonl", tshirt_template, _tshirt_names()),
+    "towel": Dataset("towels-train.jsonl", towel_template, {}),
+    "shorts": Dataset("shorts-train.jsonl", shorts_template, _shorts_names()),
 }
 
 
-def measure_real(kind: str, folder: Path, rows: str, grounding: Any) -> list[RealResult]:
-    """Fit the ``even``, ``odd`` or ``all`` rows of one kind."""
-    from tqdm import tqdm
-
+def measure_real(kind: str, folder: Path, rows: str, grounding: Grounding) -> list[RealResult]:
+    """Fit the ``even``, ``odd`` or ``all`` rows of one kind of garment."""
     if kind not in DATASETS:
-        raise ConfigError(f"there is no real data for {kind!r}; choose from {', '.join(DATASETS)}")
+        raise ConfigError(f"there is no real data for {kind!r}; {did_you_mean(kind, DATASETS)}")
     dataset = DATASETS[kind]
-    template = resolve_name(dataset.template)()
+    template = dataset.template()
     lines = (folder / dataset.file).read_text("utf-8").splitlines()
     chosen = {"even": lines[0::2], "odd": lines[1::2], "all": lines}[rows]
     results = []
     for line in tqdm(chosen, desc=f"{kind}, real", leave=False):
         mask, keypoints = rasterised(json.loads(line))
+        drawn = _drawn(mask)
         if not results:  # the first call compiles
-            grounding.ground(None, mask, template)
+            grounding.ground(drawn, mask, template)
         clock = time.process_time()
-        model = grounding.ground(None, mask, template).model
+        model = grounding.ground(drawn, mask, template).model
         seconds = time.process_time() - clock
+        assert model is not None
         results.append(RealResult(_errors(template, model.rest, keypoints, dataset.vertices), seconds))
     return results
 
@@ -99,6 +102,13 @@ def rasterised(row: Mapping[str, Any]) -> tuple[NDArray[np.bool_], dict[str, Flo
     for polygon in polygons:
         mask |= fill_polygon(polygon * scale + shift, SIZE, SIZE)
     return mask, {name: np.array(point) * scale + shift for name, point in row["keypoints"].items()}
+
+
+def _drawn(mask: NDArray[np.bool_]) -> Observation:
+    """The picture of a mask, shape (400, 400), under the usual camera."""
+    camera = Camera(width=SIZE, height=SIZE)
+    rgb = np.repeat(np.where(mask, 0, 255).astype(np.uint8)[..., None], 3, axis=2)
+    return Observation(rgb, np.full(mask.shape, camera.elevation, np.float32), camera)
 
 
 def _errors(template: Template, found: Floats, keypoints: Mapping[str, Floats], names: Mapping[str, str]) -> Floats:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from tqdm import tqdm
 
 from polyfold import plugins
 from polyfold.errors import PolyfoldError
-from polyfold.geometry import turn_onto
+from polyfold.geometry import FoldLine, turn_onto
+from polyfold.plugins.interfaces import GarmentKind, Grounding, Segmenter, Simulator
 from polyfold.polygon import FoldedModel, Template
 from polyfold.tasks import fold_lines, load_suite
 from polyfold.types import Observation, Scene
@@ -47,7 +48,7 @@ class FoldResult:
     seconds: float
 
 
-def measure_flat(kind: str, seeds: Iterable[int], grounding: Any) -> list[FlatResult]:
+def measure_flat(kind: str, seeds: Iterable[int], grounding: Grounding) -> list[FlatResult]:
     """Fit garments at any rotation."""
     garments, simulator, segmenter = _parts(kind, rotation=180.0)
     template = garments.template()
@@ -58,18 +59,18 @@ def measure_flat(kind: str, seeds: Iterable[int], grounding: Any) -> list[FlatRe
         scene, seconds = _timed(grounding, observation, segmenter, template)
         if not results:  # the first call compiles
             scene, seconds = _timed(grounding, observation, segmenter, template)
-        found = scene.model.rest
+        found = _model_of(scene).rest
         if template.cyclic and _stands_on_corner(truth):
             found = min((np.roll(found, k, axis=0) for k in range(len(found))), key=lambda v: _errors(v, truth).mean())
         results.append(FlatResult(_errors(found, truth), _turned(found, truth), seconds))
     return results
 
 
-def measure_folds(kind: str, seeds: Iterable[int], grounding: Any, policy: str) -> list[FoldResult]:
+def measure_folds(kind: str, seeds: Iterable[int], grounding: Grounding, policy: str) -> list[FoldResult]:
     """Follow garments through the folds of one standard task each."""
     garments, simulator, segmenter = _parts(kind, rotation=20.0)
     template, act = garments.template(), plugins.create("policies", policy, {}).act
-    tasks = load_suite(plugins.find("tasks", "polyfold70").target).for_garment(kind)
+    tasks = load_suite(str(plugins.find("tasks", "polyfold70").target)).for_garment(kind)
     results: list[FoldResult] = []
     for number, seed in enumerate(_progress(seeds, f"{kind}, folds")):
         observation = simulator.reset(garments.generate(seed), seed)
@@ -81,29 +82,39 @@ def measure_folds(kind: str, seeds: Iterable[int], grounding: Any, policy: str) 
             except PolyfoldError:
                 break
             scene, seconds = _timed(grounding, observation, segmenter, template, scene, line)
-            results.append(FoldResult(folds, _mean_error(scene.model, _pixels(simulator), template), seconds))
+            results.append(FoldResult(folds, _mean_error(_model_of(scene), _pixels(simulator), template), seconds))
     return results
 
 
-def _parts(kind: str, rotation: float) -> tuple[Any, Any, Any]:
+def _parts(kind: str, rotation: float) -> tuple[GarmentKind, Simulator, Segmenter]:
     simulator = plugins.create("simulators", "xpbd", {"rotation_deg": rotation})
     return plugins.create("garments", kind), simulator, plugins.create("segmenters", "colour", {})
 
 
 def _timed(
-    grounding: Any, observation: Observation, segmenter: Any, template: Template, *before: Any
+    grounding: Grounding,
+    observation: Observation,
+    segmenter: Segmenter,
+    template: Template,
+    previous: Scene | None = None,
+    line: FoldLine | None = None,
 ) -> tuple[Scene, float]:
     mask = segmenter.segment(observation)
     clock = time.process_time()
-    scene = grounding.ground(observation, mask, template, *before)
+    scene = grounding.ground(observation, mask, template, previous, line)
     return scene, time.process_time() - clock
 
 
-def _pixels(simulator: Any) -> dict[str, Floats]:
+def _model_of(scene: Scene) -> FoldedModel:
+    assert scene.model is not None, "this measures groundings that fit a model"
+    return scene.model
+
+
+def _pixels(simulator: Simulator) -> dict[str, Floats]:
     return dict(simulator.state().keypoint_pixels())
 
 
-def _truth(simulator: Any, template: Template) -> Floats:
+def _truth(simulator: Simulator, template: Template) -> Floats:
     pixels = _pixels(simulator)
     return np.array([pixels[name] for name in template.names])
 
@@ -127,6 +138,4 @@ def _stands_on_corner(truth: Floats) -> bool:
 
 
 def _progress(seeds: Iterable[int], words: str) -> Iterable[int]:
-    from tqdm import tqdm
-
     return tqdm(list(seeds), desc=words, leave=False)

@@ -154,7 +154,7 @@ def serve(script: Script | None = None, latency_s: float = 0.0) -> Iterator[Serv
         latency_s: time that each answer takes at least [s].
     """
     if script is None:
-        from polyfold_rules.rules import RulesLLM
+        from polyfold_rules import RulesLLM
 
         script = answering(RulesLLM())
     server = Server(script, latency_s)

@@ -1,9 +1,9 @@
 """What language models behind an API cost us in time, on this machine and without a network.
 
-    python -m polyfold_llms.benchmark calls     # many calls at once: limits, and our overhead a call
-    python -m polyfold_llms.benchmark replay    # the 70 tasks recorded through HTTP, then replayed: decisions, time
+    python -m experiments.benchmarks.language.transport calls     # many calls at once: limits, our overhead a call
+    python -m experiments.benchmarks.language.transport replay    # the 70 tasks recorded through HTTP, then replayed
 
-Both go through litellm's real HTTP path to a server on this machine.
+Both go through litellm's real HTTP path to a server on this machine. Run them from the root of the repository.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from polyfold_rules.rules import RulesLLM
+from polyfold_rules import RulesLLM
 
 from experiments.benchmarks.language.loopback import Received, Server, answering, serve
 from polyfold import plugins
@@ -123,11 +123,11 @@ def _timed(name: str, llm: Any, tasks: Sequence[str], first_seed: int, folder: P
         wall = time.perf_counter() - clock
     finally:
         plugins.unobserve(decisions)
-    language = sum(r["seconds"].get("language", 0.0) + r["seconds"].get("subgoals", 0.0) for r in records)
+    language = sum(r.seconds.get("language", 0.0) + r.seconds.get("subgoals", 0.0) for r in records)
     return {
         "llm": name,
         "episodes": len(records),
-        "as wanted": sum(record["success"]["polyfold"] for record in records),
+        "as wanted": sum(record.succeeded for record in records),
         "HTTP calls": len(server.received) - before,
         "wall [s]": round(wall, 1),
         "of that language [s]": round(language, 2),
@@ -144,7 +144,7 @@ def _table(rows: Sequence[dict[str, Any]]) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one of the benchmarks and print its table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     actions = parser.add_subparsers(dest="action", required=True)
     calls = actions.add_parser("calls")
     calls.add_argument("--calls", type=int, default=64)

@@ -1,10 +1,12 @@
-"""How well policies pick on garments that nothing was trained on: ``python -m polyfold_fgpnp.heldout DATA POLICY...``.
+"""How well policies pick on garments that nothing was trained on.
+
+    python -m experiments.benchmarks.policies.heldout DATA POLICY...
 
 ``DATA`` is a data set of ``polyfold collect --seeds 1150-1199 --mix uniform=16``. Each policy folds every state; a
-policy is written NAME or NAME=WEIGHTS. Prints two Markdown tables, which :mod:`polyfold_fgpnp.heldout_tables` explains:
-how well learned maps order the picks tried in a state, beside what learns nothing; and the error and regret of the pick
-that each policy chose, beside those of a random first pick. Where a policy refuses a state, that counts as leaving the
-cloth as it is.
+policy is written NAME or NAME=WEIGHTS. Prints two Markdown tables, which
+:mod:`experiments.benchmarks.policies.heldout_tables` explains: how well learned maps order the picks tried in a state,
+beside what learns nothing; and the error and regret of the pick that each policy chose, beside those of a random first
+pick. Where a policy refuses a state, that counts as leaving the cloth as it is.
 
 What was executed is kept in ``DATA/policies``, so that another policy can be added later; other weights are another
 file. After a change to the code of a policy or of the simulator, remove the files of what it concerns.
@@ -13,9 +15,8 @@ file. After a change to the code of a policy or of the simulator, remove the fil
 from __future__ import annotations
 
 import argparse
-import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -24,14 +25,15 @@ import numpy as np
 from numpy.typing import NDArray
 from polyfold_fgpnp.data.dataset import Dataset, load_dataset
 from polyfold_fgpnp.data.interaction import LINES_PER_STAGE, Interaction, execute, situations
-from polyfold_fgpnp.data.workers import in_processes
 from polyfold_fgpnp.policies.learned import CoupledActionMap, LearnedPolicy
 from polyfold_fgpnp.policies.weights import file_hash, weights_file
 
 from experiments.benchmarks.policies.heldout_tables import RECIPE, correlation_table, regret_table
 from polyfold import plugins
 from polyfold.errors import ConfigError, PlanError, PolyfoldError
+from polyfold.logs import JsonLines
 from polyfold.plugins.interfaces import Policy
+from polyfold.studies import in_processes
 
 SAME_STATE = 0.01
 """States whose flap's way differs by more than this share are not the same."""
@@ -55,12 +57,13 @@ class Contestant:
         cls = plugins.component_class("policies", name)
         if not weights and not issubclass(cls, LearnedPolicy):
             return name
-        return f"{name}-{file_hash(weights_file(weights or cls.Config().weights))[:12]}"
+        file = weights_file(weights or str(cls.Config.model_fields["weights"].default))
+        return f"{name}-{file_hash(file)[:12]}"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run what is missing and print the tables."""
-    parser = argparse.ArgumentParser(prog="python -m polyfold_fgpnp.heldout", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m experiments.benchmarks.policies.heldout", description=__doc__)
     parser.add_argument("data", type=Path, help="held-out data set")
     parser.add_argument("policies", nargs="+", metavar="POLICY[=WEIGHTS]", help="such as caso, csam+caso=out/weights…")
     parser.add_argument("--workers", type=int, default=1, help="processes (default 1)")
@@ -88,20 +91,18 @@ def _executed(path: Path, data: Dataset, contestant: Contestant, workers: int) -
     from tqdm import tqdm
 
     contestant.create()
-    kept = path / "policies" / f"{contestant.file}.jsonl"
-    kept.parent.mkdir(exist_ok=True)
-    found = dict(_kept(kept))
+    kept = JsonLines(path / "policies" / f"{contestant.file}.jsonl")
+    found: dict[int, list[float | None]] = {record["job"]: record["error_mm"] for record in kept.read()}
     interaction = Interaction(**data.description["parameters"])
     each = sum(LINES_PER_STAGE)
     missing = [job for job in range(data.states // each) if job not in found]
     work = partial(_fold_job, interaction, contestant)
-    with kept.open("a", encoding="utf-8") as stream:
-        for job, (errors, ways) in tqdm(in_processes(work, missing, workers), total=len(missing), desc=contestant.text):
-            _refuse_other_states(data["travel_mm"][each * job : each * (job + 1)], ways)
-            stream.write(json.dumps({"job": job, "error_mm": errors}) + "\n")
-            stream.flush()
-            found[job] = errors
-    return np.concatenate([found[job] for job in sorted(found)]).astype(float)
+    for job, (errors, ways) in tqdm(in_processes(work, missing, workers), total=len(missing), desc=contestant.text):
+        _refuse_other_states(data["travel_mm"][each * job : each * (job + 1)], ways)
+        kept.append({"job": job, "error_mm": errors})
+        found[job] = errors
+    # None, where the cloth diverged, becomes NaN.
+    return np.array([error for job in sorted(found) for error in found[job]], float)
 
 
 def _refuse_other_states(there: NDArray[np.float32], ways: Sequence[float]) -> None:
@@ -110,17 +111,6 @@ def _refuse_other_states(there: NDArray[np.float32], ways: Sequence[float]) -> N
             "the states of this data set can't be made again: the simulator, its rounding on this machine or how lines "
             "are drawn has changed since, so picks would be compared in different states; collect the data set anew"
         )
-
-
-def _kept(path: Path) -> Iterator[tuple[int, list[float | None]]]:
-    if not path.exists():
-        return
-    for line in path.read_text("utf-8").splitlines():
-        try:
-            record = json.loads(line)
-        except json.JSONDecodeError:
-            continue  # cut off when a run was killed
-        yield record["job"], record["error_mm"]
 
 
 def _fold_job(interaction: Interaction, contestant: Contestant, job: int) -> tuple[list[float | None], list[float]]:

@@ -24,8 +24,10 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 from polyfold_fgpnp.data.dataset import Dataset
-from polyfold_fgpnp.policies.affordance import FoldRegion, PickConfig, affordance, fold_region
+from polyfold_fgpnp.policies.actions import PickConfig
+from polyfold_fgpnp.policies.affordance import affordance
 from polyfold_fgpnp.policies.learned import CoupledActionMap
+from polyfold_fgpnp.policies.region import FoldRegion, fold_region
 from polyfold_fgpnp.training.ranks import rank_correlation
 
 from polyfold.analysis import Estimate, Table, ratio, shown

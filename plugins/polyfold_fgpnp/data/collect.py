@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from polyfold.errors import ConfigError
+from polyfold.errors import ConfigError, validation_problem
 
 if TYPE_CHECKING:
     from polyfold_fgpnp.data.dataset import Description
@@ -27,7 +27,9 @@ class Collect:
         parser.add_argument(
             "--folds", type=int, default=10_000, metavar="N", help="at least this many (default: 10000)"
         )
-        parser.add_argument("--kind", default="tshirt", help="kind of garment (default: tshirt)")
+        parser.add_argument("--kind", default="tshirt", help="of the garments (default: tshirt)")
+        parser.add_argument("--simulator", default="xpbd", metavar="NAME", help="default: xpbd")
+        parser.add_argument("--segmenter", default="colour", metavar="NAME", help="default: colour")
         parser.add_argument("--seeds", default="1000-1099", metavar="A-B", help="garment seeds (default: 1000-1099)")
         parser.add_argument(
             "--workers", type=int, default=1, metavar="N", help="processes on this machine (default: 1)"
@@ -74,21 +76,19 @@ def collect(
         progress: show a progress bar.
 
     Raises:
-        ConfigError: if the folder holds a data set with other parameters or changed shards, there is no such kind of
-            garment, the weights do not serve, or not even one fold or process is asked for.
+        PluginError: if there is no such kind of garment, simulator or segmenter.
+        ConfigError: if the folder holds a data set with other parameters or changed shards, the weights do not serve,
+            or not even one fold or process is asked for.
     """
     from tqdm import tqdm
 
-    from polyfold import plugins
+    from polyfold.studies import in_processes
     from polyfold_fgpnp.data.dataset import DatasetFolder
-    from polyfold_fgpnp.data.interaction import explore, trials_per_job, value_policy
-    from polyfold_fgpnp.data.workers import in_processes
+    from polyfold_fgpnp.data.interaction import check, explore, trials_per_job
 
     if folds < 1 or workers < 1:
         raise ConfigError(f"{folds} folds by {workers} processes can't be collected; give 1 or more of each")
-    # What does not serve is refused before there is a folder that names it.
-    plugins.component_class("garments", interaction.kind)
-    value_policy(interaction)
+    check(interaction)
     folder = DatasetFolder(out, interaction.model_dump(mode="json"))
     each = trials_per_job(interaction.mix)
     total = -(-folds // each)
@@ -109,7 +109,9 @@ def _interaction(arguments: argparse.Namespace) -> Interaction:
 
     try:
         return Interaction(
-            kind=arguments.kind,
+            garment_kind=arguments.kind,
+            simulator=arguments.simulator,
+            segmenter=arguments.segmenter,
             seeds=_seeds(arguments.seeds),
             edge_length=arguments.edge_length,
             mix=parse_mix(arguments.mix) if arguments.mix else dict(MIX),
@@ -117,9 +119,8 @@ def _interaction(arguments: argparse.Namespace) -> Interaction:
             weights=arguments.weights,
         )
     except ValidationError as error:
-        first = error.errors()[0]
-        option = str(first["loc"][0]).replace("_", "-")
-        raise ConfigError(f"--{option} has a bad value: {first['msg']}; change it") from error
+        option = str(error.errors()[0]["loc"][0]).replace("_", "-")
+        raise ConfigError(f"--{option} {validation_problem(error, below=1)}") from error
 
 
 def _seeds(text: str) -> tuple[int, int]:

@@ -4,14 +4,15 @@
 A shard ``shards/00042.npz`` (no pickle) holds what one job found. Per state, shape (S, ...):
 
 * ``mask``: the cloth, packed bits of shape (H, W); ``line``: fold line x0, y0, x1, y1 [px]; ``line_kind``: index into
-  :data:`polyfold_fgpnp.lines.LINE_KINDS`; ``garment_seed``; ``folds_before``; ``pixels_per_metre``;
+  :data:`polyfold_fgpnp.policies.lines.LINE_KINDS`; ``garment_seed``; ``folds_before``; ``pixels_per_metre``;
 * ``idle_chamfer_px``, ``travel_mm``: how far the untouched cloth is from the goal, by contour and by particles.
 
 Per trial, shape (T, ...):
 
-* ``trial_state``: index of its state within the shard; ``recipe``: index into :data:`polyfold_fgpnp.trials.RECIPES`;
+* ``trial_state``: index of its state within the shard; ``recipe``: index into
+  :data:`polyfold_fgpnp.data.trials.RECIPES`;
 * ``first``, ``second``: contour points [px]; ``picks``: where the arms picked [px], (2, 2), NaN for no second arm;
-* ``chamfer_px``, ``iou``, ``flap_mm``, ``rest_mm``: the outcome (:class:`polyfold_fgpnp.outcomes.Outcome`);
+* ``chamfer_px``, ``iou``, ``flap_mm``, ``rest_mm``: the outcome (:class:`polyfold_fgpnp.data.outcomes.Outcome`);
 * ``diverged``: the simulation failed and there is no outcome; ``result``: the resulting mask, packed bits.
 """
 
@@ -34,7 +35,7 @@ from polyfold.types import Scene
 from polyfold_fgpnp.data.outcomes import contour_reward, particle_reward
 from polyfold_fgpnp.data.trials import RECIPES
 
-SCHEMA = 1
+SCHEMA = 2
 
 IMAGE = (400, 400)
 """Height and width of all masks [px]."""
@@ -75,7 +76,7 @@ class DatasetFolder:
         target = self.path / "shards" / f"{job:05d}.npz"
         part = target.with_suffix(f".part{os.getpid()}")
         with part.open("wb") as stream:
-            np.savez_compressed(stream, **arrays)
+            np.savez_compressed(stream, **arrays)  # pyright: ignore[reportArgumentType]  (none is called allow_pickle)
         part.replace(target)
 
     def finish(self) -> Description:
@@ -154,8 +155,8 @@ class Dataset:
     def scene(self, state: int) -> Scene:
         """A state as a policy sees it, without a polygon model."""
         mask = self.mask(state)
-        kind = self.description["parameters"]["kind"]
-        return Scene(kind, (IMAGE[1], IMAGE[0]), mask, contour_of(mask), None, "{}")
+        garment_kind = self.description["parameters"]["garment_kind"]
+        return Scene(garment_kind, (IMAGE[1], IMAGE[0]), mask, contour_of(mask), None, "{}")
 
     def of_recipes(self, *recipes: str) -> NDArray[np.int64]:
         """Trials of these recipes that have an outcome."""
@@ -203,11 +204,22 @@ def _read_description(path: Path) -> Description:
     if not file.exists():
         raise ConfigError(f"there is no data set in {path}; make one with: polyfold collect --out {path}")
     description = json.loads(file.read_text("utf-8"))
+    if description.get("schema_version") == 1:
+        return _from_schema_1(description)
     if description.get("schema_version") != SCHEMA:
         raise ConfigError(
             f"{file} has schema version {description.get('schema_version')}, this polyfold reads {SCHEMA}; collect anew"
         )
     return description
+
+
+def _from_schema_1(description: Description) -> Description:
+    """A description of the time when the simulator and the segmenter could not be chosen."""
+    parameters = {**description["parameters"]}
+    parameters["garment_kind"] = parameters.pop("kind")
+    parameters["simulator"] = {"name": "xpbd", "params": parameters["simulator"]}
+    parameters["segmenter"] = {"name": "colour", "params": {}}
+    return {**description, "schema_version": SCHEMA, "parameters": parameters}
 
 
 def _changed(path: Path) -> ConfigError:

@@ -13,8 +13,8 @@ from polyfold.viz import Card, overlay, score_sheet
 from polyfold_fgpnp.data.dataset import Dataset, load_dataset
 from polyfold_fgpnp.data.outcomes import mirrored_mask
 from polyfold_fgpnp.data.trials import RECIPES
-from polyfold_fgpnp.policies.affordance import fold_region
 from polyfold_fgpnp.policies.lines import LINE_KINDS
+from polyfold_fgpnp.policies.region import fold_region
 
 PERCENTILES = (5, 25, 50, 75, 95)
 
@@ -77,12 +77,13 @@ def _expected(data: Dataset, state: int) -> NDArray[np.bool_]:
 
 def _counts(data: Dataset) -> list[str]:
     parameters = data.description["parameters"]
+    kind, edge_mm = parameters["garment_kind"], 1000 * parameters["edge_length"]
     seeds = np.unique(data["garment_seed"])
     before = np.bincount(data["folds_before"], minlength=3)
     lines = np.bincount(data["line_kind"], minlength=len(LINE_KINDS))
     return [
         f"{data.folds} folds from {data.states} states of {len(seeds)} garments "
-        f"({parameters['kind']} {seeds.min()}-{seeds.max()}, edges of {1000 * parameters['edge_length']:.1f} mm)",
+        f"({kind} {seeds.min()}-{seeds.max()}, edges of {edge_mm:.1f} mm)",
         f"diverged: {int(data['diverged'].sum())}",
         "states by folds before: " + ", ".join(f"{n}: {count}" for n, count in enumerate(before)),
         "states by line: " + ", ".join(f"{kind}: {count}" for kind, count in zip(LINE_KINDS, lines, strict=True)),

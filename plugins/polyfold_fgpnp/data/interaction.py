@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from polyfold import plugins
+from polyfold.config import ComponentSpec
 from polyfold.errors import ConfigError, GroundingError, PlanError, SimulationError
 from polyfold.garments import Garment
 from polyfold.geometry import FoldLine, contour_of
@@ -20,10 +22,11 @@ from polyfold.plugins.interfaces import Segmenter, Simulator
 from polyfold.types import Action, Observation, Scene, SimState
 from polyfold_fgpnp.data.outcomes import Expectation, Outcome, expect
 from polyfold_fgpnp.data.trials import MIX, RECIPES, Flap, ValueMap, draw_trials
-from polyfold_fgpnp.policies.affordance import FoldRegion, PickConfig, to_action
+from polyfold_fgpnp.policies.actions import PickConfig, to_action
 from polyfold_fgpnp.policies.caso import Caso
 from polyfold_fgpnp.policies.learned import CoupledActionMap
 from polyfold_fgpnp.policies.lines import LINE_KINDS, PLAUSIBLE, RandomLine, random_line
+from polyfold_fgpnp.policies.region import FoldRegion
 from polyfold_fgpnp.policies.weights import file_hash, weights_file
 
 LINES_PER_STAGE = (2, 1, 1)
@@ -47,14 +50,15 @@ class Interaction(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    kind: str = Field("tshirt", description="garment kind")
-    seeds: tuple[int, int] = Field((1000, 1099), description="first and last garment seed")
-    edge_length: float = Field(0.018, gt=0.005, le=0.05, description="edge length of the mesh [m]")
+    garment_kind: str = Field(default="tshirt", description="kind of the garments")
+    seeds: tuple[int, int] = Field(default=(1000, 1099), description="first and last garment seed")
+    edge_length: float = Field(default=0.018, gt=0.005, le=0.05, description="edge length of the mesh [m]")
     mix: Mapping[str, int] = Field(default_factory=lambda: dict(MIX), description="trials of each recipe from a state")
-    simulator: Mapping[str, Any] = Field(default_factory=dict, description="parameters of the simulator xpbd")
-    seed: int = Field(0, ge=0, description="of everything random")
-    weights: Path | None = Field(None, exclude=True, description="file of a network that the recipe chosen asks")
-    weights_hash: str | None = Field(None, description="SHA-256 of that file")
+    simulator: ComponentSpec = Field(default=ComponentSpec(name="xpbd"), description="what folds, with its parameters")
+    segmenter: ComponentSpec = Field(default=ComponentSpec(name="colour"), description="what tells cloth from table")
+    seed: int = Field(default=0, ge=0, description="of everything random")
+    weights: Path | None = Field(default=None, exclude=True, description="file of the network that chosen picks ask")
+    weights_hash: str | None = Field(default=None, description="SHA-256 of that file")
 
     @model_validator(mode="before")
     @classmethod
@@ -103,12 +107,30 @@ class Situation:
 
 
 @lru_cache(maxsize=2)
-def _tools(kind: str, seed: int, edge_length: float, simulator: tuple) -> tuple[Garment, Simulator, Segmenter]:
-    return (
-        plugins.create("garments", kind).generate(seed, edge_length),
-        plugins.create("simulators", "xpbd", dict(simulator)),
-        plugins.create("segmenters", "colour"),
-    )
+def _garment(kind: str, seed: int, edge_length: float) -> Garment:
+    """Kept for the next job on it, whose constraints then need not be made again."""
+    return plugins.create("garments", kind).generate(seed, edge_length)
+
+
+def check(interaction: Interaction) -> None:
+    """Construct what an interaction names, once, so that what does not serve is refused before anything is written.
+
+    Raises:
+        PluginError: if a component is not there.
+        ConfigError: if a parameter of one is wrong, or the weights do not serve.
+    """
+    plugins.component_class("garments", interaction.garment_kind)
+    _create_segmenter(interaction)
+    _create_simulator(interaction).close()
+    value_policy(interaction)
+
+
+def _create_simulator(interaction: Interaction) -> Simulator:
+    return plugins.create("simulators", interaction.simulator.name, interaction.simulator.params)
+
+
+def _create_segmenter(interaction: Interaction) -> Segmenter:
+    return plugins.create("segmenters", interaction.segmenter.name, interaction.segmenter.params)
 
 
 def value_policy(interaction: Interaction) -> CoupledActionMap | None:
@@ -135,40 +157,41 @@ def trials_per_job(mix: Mapping[str, int]) -> int:
 def situations(interaction: Interaction, job: int) -> Iterator[tuple[Simulator, Segmenter, Situation]]:
     """The states and fold lines of one job: one garment, flat, after one good fold and after two.
 
-    Each comes with the simulator that is in that state, and with the segmenter.
+    Each comes with the simulator that is in that state and with the segmenter, which serve until the job ends.
     """
     first, last = interaction.seeds
-    garment_seed = first + job % (last - first + 1)
+    kind, garment_seed = interaction.garment_kind, first + job % (last - first + 1)
     rng = np.random.default_rng([interaction.seed, job])
-    settings = tuple(sorted(interaction.simulator.items()))
-    garment, simulator, segmenter = _tools(interaction.kind, garment_seed, interaction.edge_length, settings)
-    observation = simulator.reset(garment, int(rng.integers(2**31)))
-    folds = 0
-    for stage, lines in enumerate(LINES_PER_STAGE):
-        if stage > 0:
-            folded = _good_fold(simulator, segmenter, observation, interaction.kind, rng)
-            observation, folds = (observation, folds) if folded is None else (folded, folds + 1)
-        state = simulator.state()
-        scene = scene_of(observation, segmenter, interaction.kind)
-        for _ in range(lines):
-            line = random_line(scene, rng, LINE_KINDS)
-            expectation = expect(line.region, scene.mask, state)
-            own = np.random.default_rng(rng.integers(2**63))
-            yield simulator, segmenter, Situation(garment_seed, folds, line, scene, state, expectation, own)
-        simulator.restore(state)
+    segmenter = _create_segmenter(interaction)
+    with closing(_create_simulator(interaction)) as simulator:
+        garment = _garment(kind, garment_seed, interaction.edge_length)
+        observation = simulator.reset(garment, int(rng.integers(2**31)))
+        folds = 0
+        for stage, lines in enumerate(LINES_PER_STAGE):
+            if stage > 0:
+                folded = _good_fold(simulator, segmenter, observation, kind, rng)
+                observation, folds = (observation, folds) if folded is None else (folded, folds + 1)
+            state = simulator.state()
+            scene = scene_of(observation, segmenter, kind)
+            for _ in range(lines):
+                line = random_line(scene, rng, LINE_KINDS)
+                expectation = expect(line.region, scene.mask, state)
+                own = np.random.default_rng(rng.integers(2**63))
+                yield simulator, segmenter, Situation(garment_seed, folds, line, scene, state, expectation, own)
+            simulator.restore(state)
 
 
-def scene_of(observation: Observation, segmenter: Segmenter, kind: str) -> Scene:
+def scene_of(observation: Observation, segmenter: Segmenter, garment_kind: str) -> Scene:
     """The scene without a polygon model."""
-    mask = segmenter.segment(observation)
-    return Scene(kind, (observation.camera.width, observation.camera.height), mask, contour_of(mask), None, "{}")
+    mask, camera = segmenter.segment(observation), observation.camera
+    return Scene(garment_kind, (camera.width, camera.height), mask, contour_of(mask), None, "{}")
 
 
 def _good_fold(
-    simulator: Simulator, segmenter: Segmenter, before: Observation, kind: str, rng: np.random.Generator
+    simulator: Simulator, segmenter: Segmenter, before: Observation, garment_kind: str, rng: np.random.Generator
 ) -> Observation | None:
     """Fold along a plausible line with the best pair of picks; None if no attempt came out well."""
-    state, scene = simulator.state(), scene_of(before, segmenter, kind)
+    state, scene = simulator.state(), scene_of(before, segmenter, garment_kind)
     for _ in range(ATTEMPTS):
         try:
             drawn = random_line(scene, rng, PLAUSIBLE)
@@ -187,7 +210,10 @@ def _good_fold(
 def execute(
     simulator: Simulator, segmenter: Segmenter, situation: Situation, action: Action
 ) -> tuple[Outcome | None, NDArray[np.bool_]]:
-    """Try an action from a situation: how it came out, and the resulting mask; no outcome if the cloth diverged."""
+    """Try an action from a situation: how it came out, and the resulting mask, bool, shape (H, W).
+
+    There is no outcome if the cloth diverged.
+    """
     simulator.restore(situation.state)
     try:
         after = simulator.execute(action)
@@ -201,7 +227,7 @@ def execute(
 
 
 def explore(interaction: Interaction, job: int) -> dict[str, NDArray[Any]]:
-    """One job as the arrays of a shard (see :mod:`polyfold_fgpnp.dataset`)."""
+    """One job as the arrays of a shard (see :mod:`polyfold_fgpnp.data.dataset`)."""
     states: list[dict[str, Any]] = []
     trials: list[dict[str, Any]] = []
     for simulator, segmenter, situation in situations(interaction, job):

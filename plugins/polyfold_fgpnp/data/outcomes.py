@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from polyfold.geometry import chamfer, contour_of, iou
 from polyfold.types import SimState
-from polyfold_fgpnp.policies.affordance import FoldRegion
+from polyfold_fgpnp.policies.region import FoldRegion
 
 Floats = NDArray[np.float64]
 

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import ConfigError
-from polyfold_fgpnp.policies.affordance import FoldRegion, PickConfig, best_pair, coupled_pick, nearest_point, slide
+from polyfold_fgpnp.policies.actions import PickConfig
+from polyfold_fgpnp.policies.affordance import best_pair, coupled_pick, slide
 from polyfold_fgpnp.policies.lines import outline_corners
+from polyfold_fgpnp.policies.region import FoldRegion, nearest_point
 
 Floats = NDArray[np.float64]
 Pairs = Sequence[tuple[Floats, Floats]]

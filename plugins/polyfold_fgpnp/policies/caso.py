@@ -7,17 +7,9 @@ from pydantic import Field
 
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, Scene
-from polyfold_fgpnp.policies.affordance import (
-    FoldRegion,
-    PickConfig,
-    best_pair,
-    fold_region,
-    lifted_vertices,
-    nearest_point,
-    second_pick,
-    slide,
-    to_action,
-)
+from polyfold_fgpnp.policies.actions import PickConfig, to_action
+from polyfold_fgpnp.policies.affordance import best_pair, second_pick, slide
+from polyfold_fgpnp.policies.region import FoldRegion, fold_region, lifted_vertices, nearest_point
 
 
 class Caso:
@@ -31,7 +23,9 @@ class Caso:
     class Config(PickConfig):
         """Parameters."""
 
-        slide: float = Field(0.1, ge=0, lt=0.5, description="share of their distance that two picks move together")
+        slide: float = Field(
+            default=0.1, ge=0, lt=0.5, description="share of their distance that two picks move together"
+        )
 
     def __init__(self, config: Config | None = None) -> None:
         self.config = config or self.Config()

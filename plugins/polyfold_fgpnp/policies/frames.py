@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from polyfold_fgpnp.policies.affordance import FoldRegion
+from polyfold_fgpnp.policies.region import FoldRegion
 
 Floats = NDArray[np.float64]
 FrameName = Literal["canonical", "camera"]
@@ -37,7 +37,7 @@ class Frame:
     matrix: Floats
 
     def apply(self, points: ArrayLike) -> Floats:
-        """Pixels of the camera, shape (..., 2), as pixels of the map."""
+        """Pixels of the camera [px], shape (..., 2), as pixels of the map [px], shape (..., 2)."""
         return np.asarray(points, float) @ self.matrix[:, :2].T + self.matrix[:, 2]
 
 
@@ -99,4 +99,7 @@ def _affine(across: Floats, along: Floats, origin: Floats, left: float, top: flo
 def _warped(mask: NDArray[np.bool_], matrix: Floats) -> NDArray[np.uint8]:
     import cv2
 
-    return cv2.warpAffine(255 * mask.astype(np.uint8), matrix, (CANONICAL_SIDE, CANONICAL_SIDE), flags=cv2.INTER_LINEAR)
+    side = CANONICAL_SIDE
+    return np.asarray(
+        cv2.warpAffine(255 * mask.astype(np.uint8), matrix, (side, side), flags=cv2.INTER_LINEAR), np.uint8
+    )

@@ -13,20 +13,11 @@ from pydantic import Field
 
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, Scene
-from polyfold_fgpnp.policies.affordance import (
-    PARTNER_SLIDE,
-    FoldRegion,
-    PickConfig,
-    affordance,
-    best_pair,
-    coupled_pick,
-    fold_region,
-    lifted_vertices,
-    nearest_point,
-    to_action,
-)
+from polyfold_fgpnp.policies.actions import PickConfig, to_action
+from polyfold_fgpnp.policies.affordance import PARTNER_SLIDE, affordance, best_pair, coupled_pick
 from polyfold_fgpnp.policies.frames import Frame, view
 from polyfold_fgpnp.policies.pairs import pair_geometry
+from polyfold_fgpnp.policies.region import FoldRegion, fold_region, lifted_vertices, nearest_point
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -68,8 +59,10 @@ class LearnedConfig(PickConfig):
 class PriorConfig(LearnedConfig):
     """Parameters of policies that add affordance to a learned value."""
 
-    weights: str = Field("pair", description=WEIGHTS)
-    prior: float = Field(2.0, ge=0, description="what the best affordance adds, in standard deviations of labels")
+    weights: str = Field(default="pair", description=WEIGHTS)
+    prior: float = Field(
+        default=2.0, ge=0, description="what the best affordance adds, in standard deviations of labels"
+    )
 
 
 class LearnedPolicy(ABC):
@@ -81,8 +74,16 @@ class LearnedPolicy(ABC):
     Config: ClassVar[type[LearnedConfig]]
 
     def __init__(self, config: LearnedConfig | None = None) -> None:
-        self.config = config or self.Config()
+        # Every policy's own Config has a default for the weights.
+        self.config = config or self.Config()  # pyright: ignore[reportCallIssue]
         self._network = _network(self.config.weights, (self.variant, *self.also))
+
+    @classmethod
+    def files_read(cls, config: LearnedConfig) -> list[Path]:
+        """The file of its weights. Raises ConfigError if there is none."""
+        from polyfold_fgpnp.policies.weights import weights_file
+
+        return [weights_file(config.weights)]
 
     def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
         """Pick where the network promises most; ``rng`` is not used.
@@ -167,7 +168,14 @@ class CoupledActionMap(_WithPrior):
     class Config(PriorConfig):
         """Parameters."""
 
-        slide: float = Field(PARTNER_SLIDE, ge=0, lt=0.5, description="share of their distance that the partner moves")
+        slide: float = Field(
+            default=PARTNER_SLIDE, ge=0, lt=0.5, description="share of their distance that the partner moves"
+        )
+
+    def __init__(self, config: Config | None = None) -> None:
+        config = config or self.Config()
+        super().__init__(config)
+        self._slide = config.slide
 
     def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
         """The lifted contour [px], shape (N, 2), and the value of picking there, shape (N,); higher is better."""
@@ -180,9 +188,9 @@ class CoupledActionMap(_WithPrior):
         return points[best], partners[best]
 
     def _coupled(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats, Floats]:
-        """Points, their partners and values."""
+        """Points and their partners [px], shape (N, 2) each, and values, shape (N,)."""
         points = self._candidates(region, scene)
-        partners = coupled_pick(region, points, self.config, self.config.slide)
+        partners = coupled_pick(region, points, self.config, self._slide)
         if self._network.config.variant == "pair":
             values = self._pair_values(region, scene, points, partners)
         else:
@@ -190,7 +198,7 @@ class CoupledActionMap(_WithPrior):
         return points, partners, values + self._prior(region, points, partners)
 
     def _candidates(self, region: FoldRegion, scene: Scene) -> Floats:
-        """Points that may be picked first, shape (N, 2)."""
+        """Points that may be picked first [px], shape (N, 2)."""
         return _thinned(region.points)
 
 
@@ -216,7 +224,7 @@ class OneActionMap(LearnedPolicy):
     class Config(LearnedConfig):
         """Parameters."""
 
-        weights: str = Field("1sam", description=WEIGHTS)
+        weights: str = Field(default="1sam", description=WEIGHTS)
 
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
         pick = region.points[int(np.argmax(self._values(region, scene, region.points)[0]))]
@@ -231,7 +239,7 @@ class TwoActionMaps(LearnedPolicy):
     class Config(LearnedConfig):
         """Parameters."""
 
-        weights: str = Field("2sam", description=WEIGHTS)
+        weights: str = Field(default="2sam", description=WEIGHTS)
 
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
         first, second = np.argmax(self._values(region, scene, region.points), axis=1)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from polyfold.errors import PlanError
 from polyfold.geometry import FoldLine
 from polyfold.types import Scene
-from polyfold_fgpnp.policies.affordance import FoldRegion, fold_region
+from polyfold_fgpnp.policies.region import FoldRegion, fold_region
 
 Floats = NDArray[np.float64]
 

@@ -28,11 +28,11 @@ class NetworkConfig(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    variant: Variant = Field("csam", description="what its values mean")
-    frame: Literal["canonical", "camera"] = Field("canonical", description="how it sees the flap")
-    base: int = Field(16, ge=4, le=128, description="channels of the first level")
-    levels: int = Field(4, ge=2, le=6, description="levels of resolution")
-    features: int = Field(16, ge=4, le=64, description="channels of the map that the pair head reads")
+    variant: Variant = Field(default="csam", description="what its values mean")
+    frame: Literal["canonical", "camera"] = Field(default="canonical", description="how it sees the flap")
+    base: int = Field(default=16, ge=4, le=128, description="channels of the first level")
+    levels: int = Field(default=4, ge=2, le=6, description="levels of resolution")
+    features: int = Field(default=16, ge=4, le=64, description="channels of the map that the pair head reads")
 
     @property
     def stem(self) -> int:
@@ -64,7 +64,7 @@ class ValueNetwork(nn.Module):
             self.head = _PairHead(config.features)
         else:
             nn.init.zeros_(self.exit.weight)
-            nn.init.zeros_(self.exit.bias)
+            nn.init.zeros_(self.exit.bias)  # pyright: ignore[reportArgumentType]  (None only without bias)
 
     def forward(self, images: Tensor, lines: Tensor) -> Tensor:
         """Maps, shape (B, maps, H, W), of images in 0..1, shape (B, C, H, W), and lines, shape (B, 4)."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from polyfold_fgpnp.policies.affordance import FoldRegion, PickConfig, quadrilateral_area
+from polyfold_fgpnp.policies.actions import PickConfig
+from polyfold_fgpnp.policies.affordance import quadrilateral_area
+from polyfold_fgpnp.policies.region import FoldRegion
 
 GEOMETRY = 6
 """How many numbers describe a pair."""

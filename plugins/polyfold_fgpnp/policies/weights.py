@@ -126,7 +126,7 @@ def load_weights(path: str | Path, *variants: str) -> tuple[ValueNetwork, Proven
         raise ConfigError(f"{path} holds weights for {config.variant}, not for {' or '.join(variants)}; give others")
     network = ValueNetwork(config)
     network.load_state_dict(tensors)
-    return network.eval().to(memory_format=channels_last), found
+    return network.eval().to(memory_format=channels_last), found  # pyright: ignore[reportCallIssue]  (no stub for it)
 
 
 def _hash(tensors: Mapping[str, Tensor], metadata: Mapping[str, str]) -> str:

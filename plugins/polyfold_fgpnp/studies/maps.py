@@ -5,17 +5,18 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polyfold import plugins
-from polyfold.errors import ConfigError
+from polyfold.config import Experiment
+from polyfold.errors import ConfigError, did_you_mean
 from polyfold.evaluation import known_tasks
 from polyfold.plugins.interfaces import Policy, ValuesPicks
 from polyfold.tasks import Task, fold_lines
-from polyfold_fgpnp.policies.affordance import fold_region
+from polyfold_fgpnp.policies.region import fold_region
 
 if TYPE_CHECKING:
     from polyfold.viz import Card
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
 
 FOUR_TASKS = ("square-corner-bottom_left", "rectangle-half-left", "tshirt-half-left", "pants-half-left")
 """The paper's: a corner of a square, a rectangle, a t-shirt and trousers in half."""
+
+
+class _Mapped(Policy, ValuesPicks, Protocol):
+    """A policy with an action map."""
 
 
 class Maps:
@@ -49,7 +54,11 @@ class Maps:
 
 
 def action_map_sheet(
-    policy: Policy, tasks: Sequence[str] = FOUR_TASKS, seed: int = 2000, path: str | Path | None = None
+    policy: Policy,
+    tasks: Sequence[str] = FOUR_TASKS,
+    seed: int = 2000,
+    path: str | Path | None = None,
+    experiment: Experiment | None = None,
 ) -> NDArray[np.uint8]:
     """For the first fold of each task: the fold line, the values over the lifted contour with the picks, the result.
 
@@ -58,6 +67,7 @@ def action_map_sheet(
         tasks: ids of tasks of the installed suites.
         seed: of the garments.
         path: PNG to write.
+        experiment: which simulator, segmenter and grounding; by default those of every experiment.
 
     Returns:
         The sheet, uint8, shape (H, W, 3).
@@ -72,23 +82,26 @@ def action_map_sheet(
     known = {task.id: task for kind in plugins.names("garments") for task in known_tasks(kind)}
     unknown = [task for task in tasks if task not in known]
     if unknown:
-        raise ConfigError(f"no task is called {unknown[0]!r}; see the ids in the suite polyfold70")
-    cards = [_card(policy, known[task], seed) for task in tasks]
+        otherwise = "see the ids in the suite polyfold70"
+        raise ConfigError(f"no task is called {unknown[0]!r}; {did_you_mean(unknown[0], known, otherwise)}")
+    cards = [_card(policy, known[task], seed, experiment or Experiment()) for task in tasks]
     return score_sheet(
         cards, "Where to pick: dark low, yellow high", path, columns=1 if len(cards) < 4 else 2, side=260
     )
 
 
-def _card(policy: Policy, task: Task, seed: int) -> Card:
+def _card(policy: _Mapped, task: Task, seed: int, experiment: Experiment) -> Card:
     from polyfold.viz import Card, overlay, value_map
     from polyfold_fgpnp.data.outcomes import expect
 
-    simulator, segmenter = plugins.create("simulators", "xpbd"), plugins.create("segmenters", "colour")
+    simulator, segmenter, grounding = (
+        plugins.create_chosen(experiment, field) for field in ("simulator", "segmenter", "grounding")
+    )
     picture = simulator.reset(plugins.create("garments", task.garment).generate(seed), seed)
     before = simulator.state()
     line = fold_lines(task, before.keypoint_pixels())[0]
     template = plugins.create("garments", task.garment).template()
-    scene = plugins.create("groundings", "polygon").ground(picture, segmenter.segment(picture), template)
+    scene = grounding.ground(picture, segmenter.segment(picture), template)
     action = policy.act(line, scene, np.random.default_rng(seed))
     points, values = policy.action_map(line, scene)
     expectation = expect(fold_region(line, scene), scene.mask, before)

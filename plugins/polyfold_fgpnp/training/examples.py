@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.errors import ConfigError, PlanError
+from polyfold.geometry import FoldLine
 from polyfold_fgpnp.data.dataset import Dataset
 from polyfold_fgpnp.data.trials import COUPLED
-from polyfold_fgpnp.policies.affordance import fold_region
 from polyfold_fgpnp.policies.frames import FrameName, view
 from polyfold_fgpnp.policies.pairs import pair_geometry
+from polyfold_fgpnp.policies.region import fold_region
 
 Floats = NDArray[np.float32]
 
@@ -57,13 +58,15 @@ class Examples:
     def __len__(self) -> int:
         return len(self.images)
 
-    def chosen(self, states: NDArray) -> Examples:
-        """The examples of some states, by index or mask."""
+    def chosen(self, states: NDArray[np.integer | np.bool_]) -> Examples:
+        """The examples of some states, by index, shape (K,), or mask, shape (S,)."""
         return Examples(**{name: value[states] for name, value in vars(self).items()})
 
 
 def label(reward: ArrayLike, scale: str) -> NDArray[np.float64]:
-    """What a network learns for a reward: itself (``linear``), or minus the logarithm of what it lacks to 1 (``log``).
+    """What a network learns for rewards, shape (...).
+
+    Themselves (``linear``), or minus the logarithm of what they lack to 1 (``log``).
 
     Between two good folds the reward differs by a percent, between good and bad ones by all of it. The logarithm makes
     the first count as well.
@@ -100,7 +103,7 @@ def make_examples(
     padded = [_padded_to(part, most) for part in parts]
     names = vars(padded[0])
     joined = Examples(**{name: np.concatenate([getattr(part, name) for part in padded]) for name in names})
-    return joined.chosen(joined.valid.any(1))
+    return joined.chosen(np.asarray(joined.valid.any(1)))
 
 
 def _examples_of(data: Dataset, variant: str, frame: FrameName, reward: str, scale: str, folds: int | None) -> Examples:
@@ -136,7 +139,8 @@ def _trials(data: Dataset, variant: str, reward: str, folds: int | None) -> NDAr
     """Trials that teach a variant, of the first so many; one without a reward would make every weight NaN."""
     trials = data.of_recipes(*TRIALS_OF[variant])
     trials = trials[trials < (folds or data.folds)]
-    return trials[np.isfinite(_rewards(data, reward)).all(0)[trials]]
+    sound = np.asarray(np.isfinite(_rewards(data, reward)).all(0))
+    return trials[sound[trials]]
 
 
 def _rewards(data: Dataset, reward: str) -> NDArray[np.float64]:
@@ -144,7 +148,7 @@ def _rewards(data: Dataset, reward: str) -> NDArray[np.float64]:
     return np.stack([data.reward(name) for name in (("contour", "particles") if reward == "both" else (reward,))])
 
 
-def _ordered(picks: NDArray, line) -> NDArray:
+def _ordered(picks: NDArray[np.float64], line: FoldLine) -> NDArray[np.float64]:
     """The two picks of each trial, shape (K, 2, 2), ordered along the fold line."""
     along = picks @ (np.asarray(line.end) - np.asarray(line.start))
     return np.take_along_axis(picks, np.argsort(along, 1)[..., None], 1)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-import json
+import os
 from collections.abc import Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
+
+from polyfold.logs import JsonLines
+from polyfold_fgpnp.training.runs import METRICS
 
 
 class Logs:
@@ -17,10 +21,14 @@ class Logs:
     """
 
     def __init__(self, out: Path, done: int) -> None:
-        self._path = out / "metrics.jsonl"
-        lines = self._path.read_text("utf-8").splitlines()[:done] if self._path.exists() else []
-        self._path.write_text("".join(line + "\n" for line in lines), "utf-8")
+        self._lines = JsonLines(out / METRICS)
+        self._drop_after(done)
         self._board = _tensorboard(out, done)
+
+    def _drop_after(self, done: int) -> None:
+        ends = [0, *(end for _, end in islice(self._lines.lines(), done))]
+        if self._lines.path.exists():
+            os.truncate(self._lines.path, ends[-1])
 
     def __enter__(self) -> Logs:
         return self
@@ -31,8 +39,7 @@ class Logs:
 
     def write(self, epoch: int, metrics: Mapping[str, float]) -> None:
         """Log the metrics after an epoch."""
-        with self._path.open("a", encoding="utf-8") as stream:
-            stream.write(json.dumps({"epoch": epoch, **metrics}) + "\n")
+        self._lines.append({"epoch": epoch, **metrics})
         if self._board is not None:
             for name, value in metrics.items():
                 self._board.add_scalar(name, value, epoch)

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 
 def rank_correlation(predicted: ArrayLike, true: ArrayLike) -> float:
-    """Spearman's coefficient; NaN for fewer than three values or if either is constant."""
+    """Spearman's coefficient of values, shape (N,) each; NaN for fewer than three or if either is constant."""
     from scipy.stats import rankdata
 
     predicted, true = np.asarray(predicted, float), np.asarray(true, float)

@@ -1,1 +1,1 @@
-"""Clauses: each says one fold, or what the whole should become."""
+"""Clauses: the folds that each frame asks for, given those before it."""

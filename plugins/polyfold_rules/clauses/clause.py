@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from polyfold_rules.frames.frame import Frame
 from polyfold_rules.shapes.folds import OPPOSITE_EDGE, Fold
 from polyfold_rules.shapes.parts import Garment, Part, resolve
-from polyfold_rules.words.frames import Frame
 from polyfold_rules.words.phrases import NounPhrase
 
 TOWARDS = {"up": "bottom", "down": "top", "right": "left", "left": "right"}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from polyfold_rules.clauses.clause import MIDDLE, TOWARDS, Clause, moving_edge
 from polyfold_rules.clauses.goals import fold_in_half
+from polyfold_rules.frames.frame import Frame
 from polyfold_rules.shapes.folds import OPPOSITE_CORNER, OPPOSITE_EDGE, Fold
 from polyfold_rules.shapes.parts import Garment, NotUnderstoodError, Part
-from polyfold_rules.words.frames import Frame
 
 PLACES_BESIDE = ("armpit", "armhole", "crotch", "body")
 """Places that no edge is folded to, neither the opposite edge nor the middle."""

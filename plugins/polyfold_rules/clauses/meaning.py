@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from polyfold_rules.clauses.clause import parts_of
-from polyfold_rules.clauses.clauses import folds_of_frame
+from polyfold_rules.clauses.folding import folds_of_frame
 from polyfold_rules.clauses.goals import fold_for_goal
+from polyfold_rules.frames.assembly import frames_of
+from polyfold_rules.frames.ellipsis import completed
+from polyfold_rules.frames.frame import Frame, Request
 from polyfold_rules.shapes.folds import EDGES, OPPOSITE_EDGE, Fold
 from polyfold_rules.shapes.parts import Garment, NotUnderstoodError
-from polyfold_rules.words.assembly import frames_of
 from polyfold_rules.words.chatter import plain_tokens
-from polyfold_rules.words.ellipsis import completed
-from polyfold_rules.words.frames import Frame, Request
 from polyfold_rules.words.tokens import Sentence, read
 
 MAX_FOLDS = 8

@@ -1,1 +1,1 @@
-"""Parts, outlines and creases: where on the garment the words point."""
+"""Shapes: which part of the garment a noun phrase means, and where the fold line of a fold lies."""

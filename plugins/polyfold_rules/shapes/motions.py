@@ -55,7 +55,13 @@ class Points:
 
     @classmethod
     def of_polygon(cls, positions: Mapping[str, Floats], edges: Mapping[str, Any], size: tuple[int, int]) -> Points:
-        """Vertices by name with the edges of every layer."""
+        """Vertices by name with the edges of every layer.
+
+        Args:
+            positions: name -> position [px], shape (2,).
+            edges: layer -> pairs of names.
+            size: (width, height) of the image [px].
+        """
         names = tuple(positions)
         index = {name: i for i, name in enumerate(names)}
         joined = {
@@ -68,7 +74,13 @@ class Points:
 
     @classmethod
     def of_outline(cls, names: Iterable[str], positions: Floats, size: tuple[int, int]) -> Points:
-        """Points in order along an outline: neighbours are joined."""
+        """Points in order along an outline: neighbours are joined.
+
+        Args:
+            names: what to call them.
+            positions: where they are [px], shape (N, 2).
+            size: (width, height) of the image [px].
+        """
         count = len(positions)
         return cls(tuple(names), np.asarray(positions), tuple((i, (i + 1) % count) for i in range(count)), size)
 

@@ -143,7 +143,7 @@ def _right_of(corners: Floats, kind: str) -> Floats:
     rivals = np.flatnonzero(totals >= _RIVAL * totals.max())
     chosen = rivals[int(np.argmin(np.round(np.abs(angles[rivals]), 1) - 1e-6 * totals[rivals]))]
     alike = apart[chosen] < _ALIGNED
-    turn = angles[chosen] + float(np.average(_quarter(angles[alike] - angles[chosen]), weights=lengths[alike]))
+    turn = float(angles[chosen]) + float(np.average(_quarter(angles[alike] - angles[chosen]), weights=lengths[alike]))
     if kind == "pants":
         turn = _by_borders(turn, corners, edges, lengths)
     return np.array([np.cos(turn), np.sin(turn)])
@@ -205,6 +205,9 @@ def pockets(framed: Floats) -> list[tuple[int, int, int, float]]:
     """Concave stretches of a polygon: index of the deepest corner, of the hull corners around it, and its depth [px].
 
     The hull corners are given in the order of the polygon.
+
+    Args:
+        framed: the polygon's corners [px], shape (N, 2).
     """
     count = len(framed)
     hull = _hull_indices(framed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from polyfold_rules.shapes.folds import CORNERS, EDGES, OPPOSITE_CORNER, OPPOSITE_EDGE, Fold
@@ -314,4 +314,5 @@ def _bands(phrase: NounPhrase, garment: Garment, role: str, noun: str | None) ->
     return [Part("band", side, share) for side in sides]
 
 
-_READERS: Mapping[str, object] = {"sleeve": _sleeves, "corner": _corners, "edge": _edges, "band": _bands}
+_Reader = Callable[[NounPhrase, Garment, str, str | None], list[Part]]
+_READERS: Mapping[str, _Reader] = {"sleeve": _sleeves, "corner": _corners, "edge": _edges, "band": _bands}

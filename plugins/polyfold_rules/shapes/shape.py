@@ -42,7 +42,9 @@ class Shape:
     @classmethod
     def from_text(cls, content: Mapping[str, Any]) -> Shape:
         """Read a decoded model text; vertices without usable coordinates are passed over."""
-        image = content.get("image") if isinstance(content.get("image"), Mapping) else {}
+        image = content.get("image")
+        if not isinstance(image, Mapping):
+            image = {}
         size = (int(image.get("width", 400)), int(image.get("height", 400)))
         entries = _entries(content)
         points = {name: np.array([float(e["x"]), float(e["y"])]) for name, e in entries.items()}
@@ -110,7 +112,12 @@ def _unfolded(points: Mapping[str, Point], layers: Mapping[str, list[int]], fold
 
 
 def edge_vertices(points: Mapping[str, Point], edge: str) -> list[str]:
-    """Names of the vertices that bound an edge, in a fixed order; sleeves and inner legs do not count."""
+    """Names of the vertices that bound an edge, in a fixed order; sleeves and inner legs do not count.
+
+    Args:
+        points: name -> position [px], shape (2,).
+        edge: ``left``, ``right``, ``top`` or ``bottom``.
+    """
     names = [name for name in points if not _CREASE.fullmatch(name)]
     if edge in ("left", "right"):
         return [n for n in names if n.endswith(f"_{edge}") and not n.startswith("sleeve")]

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from math import log
 
 from polyfold_rules.shapes.folds import OPPOSITE_CORNER, Fold
-from polyfold_rules.shapes.outcomes import Outcome, outcomes
 from polyfold_rules.shapes.parts import Garment, NotUnderstoodError
+from polyfold_rules.wishes.outcomes import Outcome, outcomes
 from polyfold_rules.wishes.wish import Bound, Wish
 
 Demand = tuple[str, Callable[[Outcome], bool]]
@@ -61,9 +61,9 @@ def _demands(wish: Wish, garment: Garment) -> Iterator[Demand]:
         yield f"like a {look}", lambda outcome, look=look: _LOOKS[look](outcome)
     if wish.hidden:
         yield "without the parts that should be gone", lambda outcome: wish.hidden == _gone(outcome)
-    for side in wish.kept:
+    for side in sorted(wish.kept):
         yield f"left at the {side}", lambda outcome, side=side: not any(side in _moved(fold) for fold in outcome.folds)
-    for side in wish.lies:
+    for side in sorted(wish.lies):
         yield f"at the {side}", lambda outcome, side=side: _lies(outcome, side)
     if wish.points:
         yield f"pointing to the {wish.points}", lambda outcome: outcome.points == {wish.points}

@@ -8,8 +8,8 @@ from dataclasses import replace
 from polyfold_rules.clauses.meaning import Meaning, understand
 from polyfold_rules.shapes.parts import Garment, NotUnderstoodError
 from polyfold_rules.wishes.granting import folds_for_wish
+from polyfold_rules.wishes.reading import read_wish
 from polyfold_rules.wishes.wish import Wish
-from polyfold_rules.wishes.wishes import read_wish
 
 _NAMES = {"tshirt": ("tshirt",), "pants": ("pants",), "quad": ("cloth",)}
 
@@ -22,26 +22,33 @@ def plan(text: str, garment: Garment) -> Meaning:
     """
     wish = read_wish(text, _called(garment))
     if wish is not None:
-        return Meaning(tuple(folds_for_wish(wish, garment)), tuple(garment.notes))
-    utmost = read_wish(text, _called(garment), folds_named=True)
-    if utmost is not None and (utmost.least or _LESS.search(text.lower())):
-        return Meaning(tuple(folds_for_wish(utmost, garment)), tuple(garment.notes))
-    if utmost is None and (more := _MORE.search(text.lower())) is not None:
-        raise NotUnderstoodError(f"folding makes nothing {more.group('more')}")
+        return _granted(wish, garment)
+    loose = read_wish(text, _called(garment), folds_named=True)
     ahead = replace(garment, folds=list(garment.folds), notes=[])
+    if loose is None:
+        if more := _MORE.search(text.lower()):
+            raise NotUnderstoodError(f"folding makes nothing {more.group('more')}")
+        return understand(_spelled_out(text, ahead), ahead)
+    if loose.least or _LESS.search(text.lower()):
+        return _granted(loose, garment)
     try:
         meaning = understand(_spelled_out(text, ahead), ahead)
     except NotUnderstoodError:
-        if utmost is None:
-            raise
-        meaning = None
-    if meaning is not None and not _too_many(meaning, utmost):
+        return _granted(loose, garment)
+    return _with_fewer_folds(meaning, loose, garment)
+
+
+def _granted(wish: Wish, garment: Garment) -> Meaning:
+    return Meaning(tuple(folds_for_wish(wish, garment)), tuple(garment.notes))
+
+
+def _with_fewer_folds(meaning: Meaning, wish: Wish, garment: Garment) -> Meaning:
+    """What the wish grants, if it asks for fewer folds than were understood: *fold it twice*."""
+    if wish.steps is None or len(meaning.folds) <= wish.steps[1]:
         return meaning
     try:
-        return Meaning(tuple(folds_for_wish(utmost, garment)), tuple(garment.notes))
+        return _granted(wish, garment)
     except NotUnderstoodError:
-        if meaning is None:
-            raise
         return meaning
 
 
@@ -51,11 +58,6 @@ _MORE = re.compile(
     r"(?P<more>longer|wider|larger|bigger|taller|broader)(?= ?[.!?]|$| please)"
 )
 """Sizes of the whole cloth: *short* and *long* name edges to the grammar of folds."""
-
-
-def _too_many(meaning: Meaning, wish: Wish | None) -> bool:
-    """Whether a wish that the whole sentence can be read as asks for fewer folds than these: *fold it twice*."""
-    return wish is not None and wish.steps is not None and len(meaning.folds) > wish.steps[1]
 
 
 def _spelled_out(text: str, garment: Garment) -> str:

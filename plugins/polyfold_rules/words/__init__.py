@@ -1,1 +1,1 @@
-"""Words of fold language: tokens, spelling, phrases and what is left out."""
+"""Words: text to tagged tokens and noun phrases, with spelling, plainer wording and idle remarks taken care of."""

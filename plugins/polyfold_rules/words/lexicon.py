@@ -11,7 +11,7 @@ Phrase = tuple[tuple[str, ...], str, str]
 
 @cache
 def _parts() -> tuple[str, str]:
-    text = files(__package__).joinpath("lexicon.txt").read_text("utf-8")
+    text = files("polyfold_rules.words").joinpath("lexicon.txt").read_text("utf-8")
     table, _, filler = text.partition("\nfiller:\n")
     return table, filler
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from polyfold_rules.shapes.geometric import without_geometry
+from polyfold_rules.words.geometric import without_geometry
 from polyfold_rules.words.lexicon import phrases
 from polyfold_rules.words.spelling import variants
 

@@ -1,4 +1,4 @@
-"""The floors: agents that any method must beat, so that a metric which rewards them is seen to."""
+"""The baselines: agents that any method must beat, so that a metric which rewards them is seen to."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Random:
 
         model_config = ConfigDict(frozen=True, extra="forbid")
 
-        folds: int = Field(2, ge=1, le=12, description="folds per episode")
+        folds: int = Field(default=2, ge=1, le=12, description="folds per episode")
 
     def __init__(self, config: Config, segmenter: Segmenter) -> None:
         self._folds = config.folds

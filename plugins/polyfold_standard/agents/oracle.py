@@ -28,7 +28,9 @@ class Oracle:
 
         model_config = ConfigDict(frozen=True, extra="forbid")
 
-        ground: bool = Field(False, description="ground every picture too, for policies that pick at polygon vertices")
+        ground: bool = Field(
+            default=False, description="ground every picture too, for policies that pick at polygon vertices"
+        )
 
     def __init__(self, config: Config, segmenter: Segmenter, grounding: Grounding, policy: Policy) -> None:
         self._ground = config.ground
@@ -37,7 +39,7 @@ class Oracle:
         self._policy = policy
 
     def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
-        """Take the lines from the guidance."""
+        """Take the true fold lines, which the oracle alone is given."""
         self._template = goal.template
         self._before: tuple[Scene, FoldLine] | None = None
         self._rng = np.random.default_rng(goal.seed)

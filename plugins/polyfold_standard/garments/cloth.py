@@ -7,7 +7,7 @@ import numpy as np
 from polyfold.garments import Garment, Outline, Pattern, curved_outline, mesh_panels
 from polyfold_standard.garments.colours import fabric_colours
 
-CORNERS = ("bottom_left", "top_left", "top_right", "bottom_right")
+CORNERS: tuple[str, ...] = ("bottom_left", "top_left", "top_right", "bottom_right")
 
 CLOTH = Pattern(
     corners=CORNERS, top=("top_left", "top_right"), bottom=("bottom_left", "bottom_right"), size=0.35, cyclic=CORNERS

@@ -21,7 +21,7 @@ class Rectangle:
 
     def template(self) -> Template:
         """The polygon template."""
-        from polyfold_standard.templates.rectangle import rectangle_template
+        from polyfold_standard.templates.quads import rectangle_template
 
         return rectangle_template()
 

@@ -21,7 +21,7 @@ class Square:
 
     def template(self) -> Template:
         """The polygon template."""
-        from polyfold_standard.templates.square import square_template
+        from polyfold_standard.templates.quads import square_template
 
         return square_template()
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from polyfold.polygon import Penalty, SymmetricGenerator, Template, angle_range, position_range, ratio_range
-
-__all__ = ["LegRanges", "leg_penalties", "leg_shape", "pants_template", "two_legged"]
+from polyfold_standard.templates.sides import turned
 
 NAMES = (
     "leg_inner_left",
@@ -116,7 +115,7 @@ class LegRanges:
 
 def leg_penalties(ranges: LegRanges) -> list[Penalty]:
     """The penalties of a two-legged garment."""
-    down = SPINE[::-1]
+    down = (WAIST, LEG_ENDS)
     found = [
         angle_range(WAIST, SPINE, 80, 100, 5),
         ratio_range(SPINE, WAIST, *ranges.slender, 0.1),
@@ -134,7 +133,7 @@ def leg_penalties(ranges: LegRanges) -> list[Penalty]:
         end = (f"leg_inner_{side}", f"leg_outer_{side}")
         found += [
             ratio_range(end, WAIST, *ranges.leg, 0.06),
-            angle_range(end, seam, *sorted(sign * angle for angle in ranges.cuff), 6),
-            angle_range(seam, down, *sorted(sign * angle for angle in ranges.flare), 5),
+            turned(end, seam, sign, ranges.cuff, 6),
+            turned(seam, down, sign, ranges.flare, 5),
         ]
     return found

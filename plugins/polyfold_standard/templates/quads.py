@@ -6,8 +6,6 @@ from functools import cache
 
 from polyfold.polygon import Penalty, SymmetricGenerator, Template, angle_range, ratio_range
 
-__all__ = ["rectangle_template", "square_template", "towel_template"]
-
 CORNERS = ("bottom_left", "top_left", "top_right", "bottom_right")
 LEFT, TOP, RIGHT, BOTTOM = zip(CORNERS, CORNERS[1:] + CORNERS[:1], strict=True)
 

@@ -7,8 +7,6 @@ from functools import cache
 from polyfold.polygon import Template
 from polyfold_standard.templates.pants import LegRanges, leg_penalties, leg_shape, two_legged
 
-__all__ = ["shorts_template"]
-
 
 @cache
 def shorts_template() -> Template:

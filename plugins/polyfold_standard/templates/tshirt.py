@@ -13,8 +13,7 @@ from polyfold.polygon import (
     position_range,
     ratio_range,
 )
-
-__all__ = ["tshirt_template"]
+from polyfold_standard.templates.sides import turned
 
 NAMES = (
     "hem_left",
@@ -124,7 +123,7 @@ def _body() -> list[Penalty]:
         found += [
             angle_range(seam, SPINE, -6, 6, 4),
             # The contour hardly shows the shoulder; how the armhole leans and how long it is does.
-            angle_range(armhole, SPINE, *sorted((sign * 3, sign * 11)), 4),
+            turned(armhole, SPINE, sign, (3, 11), 4),
             ratio_range(armhole, SHOULDERS, 0.4, 0.53, 0.05),
             position_range(f"armpit_{side}", SPINE, 0.6, 0.74, 0.04),
         ]
@@ -152,13 +151,13 @@ def _sleeve(side: str, sign: float) -> list[Penalty]:
     loop = [armpit, bottom, top, shoulder]
     turns = {armpit: (35, 130), bottom: (40, 105), top: (70, 105), shoulder: (100, 145)}
     corners = [
-        angle_range((b, c), (a, b), *sorted((sign * turns[b][0], sign * turns[b][1])), 6)
+        turned((b, c), (a, b), sign, turns[b], 6)
         for a, b, c in zip(loop[-1:] + loop[:-1], loop, loop[1:] + loop[:1], strict=True)
     ]
     return [
         *corners,
-        angle_range((bottom, top), axis, *sorted((sign * 70, sign * 100)), 6),
-        angle_range(axis, SPINE, *sorted((-sign * 80, -sign * 135)), 8),
+        turned((bottom, top), axis, sign, (70, 100), 6),
+        turned(axis, SPINE, -sign, (80, 135), 8),
         ratio_range(axis, SHOULDERS, 0.2, 0.55, 0.06),
         ratio_range((bottom, top), (armpit, shoulder), 0.55, 0.85, 0.08),
     ]

@@ -152,7 +152,8 @@ def _rows(labels: Sequence[_Label], height: int) -> Floats:
     """Heights [px] for labels, as near their points as they fit below each other."""
     wanted = np.array([label.point[1] for label in labels], float)
     space = line_height(LABEL) + 5
-    rows = np.maximum.accumulate(wanted - np.arange(len(wanted)) * space) + np.arange(len(wanted)) * space
+    steps = space * np.arange(len(wanted), dtype=float)
+    rows: Floats = np.maximum.accumulate(wanted - steps) + steps
     last = height - space / 2
     for i in range(len(rows) - 1, -1, -1):
         rows[i] = min(rows[i], last)

@@ -1,0 +1,76 @@
+"""Motion: free flight, the grippers, and the velocities that a substep ends with."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polyfold_xpbd.kernels.vectors import careful, compiled
+
+
+@compiled
+def predict(x, v, previous, mobility, dt, damping, fastest):
+    """Let free particles fly for ``dt`` [s] under gravity, damped, and no faster than ``fastest`` [m/s].
+
+    Args:
+        x, v: positions [m] and velocities [m/s], shape (N, 3); ``x`` is changed.
+        previous: gets the positions before [m], shape (N, 3).
+        mobility: 0 for held particles and 1 for free ones, shape (N,).
+        dt: the substep [s].
+        damping: of velocities [1/s].
+        fastest: top speed [m/s].
+    """
+    keep = np.float32(1.0) - damping * dt
+    fall = np.float32(9.81) * dt
+    for i in range(x.shape[0]):
+        previous[i, 0], previous[i, 1], previous[i, 2] = x[i, 0], x[i, 1], x[i, 2]
+        if mobility[i] == np.float32(0.0):
+            continue
+        vx, vy, vz = v[i, 0] * keep, v[i, 1] * keep, (v[i, 2] - fall) * keep
+        speed_2 = vx * vx + vy * vy + vz * vz
+        step = dt
+        if speed_2 > fastest * fastest:
+            step = dt * fastest / np.sqrt(speed_2)
+        x[i, 0] += vx * step
+        x[i, 1] += vy * step
+        x[i, 2] += vz * step
+
+
+@compiled
+def carry(x, grasped, offsets, arm, directions, path, angles, k):
+    """Put the grasped particles where the grippers are, turned about the crease's direction."""
+    c, s = np.float32(np.cos(angles[k])), np.float32(np.sin(angles[k]))
+    for g in range(grasped.shape[0]):
+        a = arm[g]
+        ux, uy = directions[a, 0], directions[a, 1]
+        forward = offsets[g, 0] * ux + offsets[g, 1] * uy
+        up = offsets[g, 2]
+        turned, risen = c * forward + s * up, c * up - s * forward
+        i = grasped[g]
+        x[i, 0] = path[k, a, 0] + offsets[g, 0] + (turned - forward) * ux
+        x[i, 1] = path[k, a, 1] + offsets[g, 1] + (turned - forward) * uy
+        x[i, 2] = path[k, a, 2] + risen
+
+
+@compiled
+def velocities(x, previous, v, inverse_dt):
+    """Velocities [m/s] of a substep into ``v``, shape (N, 3), from positions ``x`` and those ``previous`` to it [m].
+
+    Returns:
+        Sum of the squared speeds and the largest squared speed [m²/s²].
+    """
+    energy, fastest_2 = np.float32(0.0), np.float32(0.0)
+    for i in range(x.shape[0]):
+        vx = (x[i, 0] - previous[i, 0]) * inverse_dt
+        vy = (x[i, 1] - previous[i, 1]) * inverse_dt
+        vz = (x[i, 2] - previous[i, 2]) * inverse_dt
+        v[i, 0], v[i, 1], v[i, 2] = vx, vy, vz
+        speed_2 = vx * vx + vy * vy + vz * vz
+        energy += speed_2
+        fastest_2 = max(fastest_2, speed_2)
+    return energy, fastest_2
+
+
+@careful
+def is_finite(x):
+    """Whether all positions [m], shape (N, 3), are numbers within 100 m."""
+    return np.isfinite(x.sum()) and np.abs(x).max() < 100.0

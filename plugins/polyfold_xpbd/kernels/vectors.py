@@ -1,0 +1,43 @@
+"""How kernels are compiled, and what they share: adding to a vector, and the normals of the sheet."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+compiled = njit(fastmath=True, error_model="numpy")
+careful = njit(error_model="numpy")
+"""Without fast maths, which assumes that nothing is NaN."""
+
+
+@compiled
+def shift(vectors, i, scale, x, y, z):
+    """Add ``scale`` times (x, y, z) to vector i of ``vectors``, shape (N, 3)."""
+    vectors[i, 0] += scale * x
+    vectors[i, 1] += scale * y
+    vectors[i, 2] += scale * z
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def vertex_normals(x, corners, use, normals):
+    """Area-weighted mean normals of the particles into ``normals``, shape (N, 3).
+
+    Their length says how flat the sheet is there: 1 where all triangles agree, near 0 on a sharp crease.
+    """
+    areas = np.full(x.shape[0], np.float32(1e-20), np.float32)
+    normals[:, :] = np.float32(0.0)
+    for t in range(corners.shape[0]):
+        a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
+        ux, uy, uz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+        vx, vy, vz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
+        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        area = np.sqrt(nx * nx + ny * ny + nz * nz)
+        for k in range(3):
+            vertex, weight = corners[t, k], use[t, k]
+            shift(normals, vertex, weight, nx, ny, nz)
+            areas[vertex] += weight * area
+    for i in range(x.shape[0]):
+        inverse = np.float32(1.0) / areas[i]
+        normals[i, 0] *= inverse
+        normals[i, 1] *= inverse
+        normals[i, 2] *= inverse

@@ -1,0 +1,45 @@
+"""What components read besides their source is part of the fingerprint that guards a resumed run."""
+
+import pytest
+
+from polyfold import Experiment
+from polyfold.errors import ConfigError
+from polyfold.logs import fingerprint
+
+
+def test_the_weights_of_a_learned_policy_count():
+    assert set(fingerprint([Experiment.of(policy="csam+caso")]).files) == {"pair.safetensors"}
+    assert set(fingerprint([Experiment.of(policy="1sam")]).files) == {"1sam.safetensors"}
+    assert not fingerprint([Experiment.of(policy="caso")]).files
+
+
+def test_weights_that_are_not_there_are_named():
+    with pytest.raises(ConfigError, match="no weights 'mine'"):
+        fingerprint([Experiment.of(policy={"name": "1sam", "weights": "mine"})])
+
+
+def test_a_replayed_cassette_counts_by_its_content(tmp_path):
+    cassette = tmp_path / "said.jsonl"
+    replayed = Experiment.of(llm=f"replay:{cassette}")
+    digests = []
+    for content in ("", "\n"):
+        cassette.write_text(content)
+        digests.append(fingerprint([replayed]).files["said.jsonl"])
+    assert digests[0] != digests[1]
+
+
+def test_a_recorded_cassette_grows_as_the_run_goes_on_and_does_not_count(tmp_path):
+    assert not fingerprint([Experiment.of(llm=f"record:{tmp_path / 'said.jsonl'}")]).files
+
+
+@pytest.mark.parametrize(
+    ("planner", "asks"),
+    [
+        ("hierarchical", {"subgoals@v1", "fold_line@v1", "fold_line@image-v1"}),
+        ("direct-1arm", {"subgoals@v1", "direct_1arm@v1", "direct_1arm@keypoints-v1"}),
+        ("direct-2arm", {"subgoals@v1", "direct_2arm@v1", "direct_2arm@keypoints-v1"}),
+        ("zero-shot-vlm", {"zero_shot@v1"}),
+    ],
+)
+def test_the_prompts_of_planners_count(planner, asks):
+    assert asks <= set(fingerprint([Experiment.of(planner=planner)]).prompts)

@@ -1,0 +1,27 @@
+"""Jobs in worker processes."""
+
+import pytest
+
+from polyfold.studies import in_processes
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("count", [0, 1, 20])
+def test_every_job_is_done_once_however_many_there_are(workers, count):
+    assert sorted(in_processes(abs, range(count), workers)) == [(job, job) for job in range(count)]
+
+
+def test_jobs_are_read_as_workers_become_free():
+    read = []
+    jobs = (read.append(job) or job for job in range(100))
+    results = in_processes(abs, jobs, 2)
+    assert next(results) == (0, 0)
+    assert read == [0], "the first job runs here, before anything is started"
+    next(results)
+    assert len(read) <= 6
+    results.close()
+
+
+def test_an_error_of_a_job_ends_the_run_with_that_error():
+    with pytest.raises(TypeError):
+        list(in_processes(abs, [1, 2, "three"], 2))
