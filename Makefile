@@ -2,26 +2,35 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.installed
+INSTALLED := $(VENV)/.installed
+LINTERS := $(VENV)/.linters
+PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 .PHONY: demo test lint clean
 
-$(STAMP): pyproject.toml constraints.txt
+$(INSTALLED): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[test]'
-	touch $(STAMP)
+	$(PIP_INSTALL) --editable '.[test]'
+	touch $(INSTALLED)
 
-demo: $(STAMP)
+$(LINTERS): $(INSTALLED)
+	$(PIP_INSTALL) --editable '.[lint]'
+	touch $(LINTERS)
+
+demo: $(INSTALLED)
 	$(BIN)/polyfold fold "fold the t-shirt into a rectangular block" --garment tshirt --seed 0 --out runs/demo
 	$(BIN)/polyfold garments --out runs/demo/garments.png
 	$(BIN)/polyfold fold "fold it in half" --garment tshirt --outline tests/data/artf_tshirt.json --out runs/demo-twin
 
-test: $(STAMP)
+test: $(INSTALLED)
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
-lint: $(STAMP)
+# Pyright's type checker and Node come from the Python package index; the variable keeps it from asking for newer ones.
+lint: $(LINTERS)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports --no-cache --no-logo
+	PYRIGHT_PYTHON_IGNORE_WARNINGS=1 $(BIN)/pyright --pythonpath $(BIN)/python
 
 clean:
 	rm -rf $(VENV) runs build dist

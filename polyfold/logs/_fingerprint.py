@@ -205,7 +205,8 @@ def _digest_of_class(target: type) -> str:
 
 
 def _digest_of_folder(folder: Path) -> str:
-    files = sorted(path for path in folder.rglob("*") if path.suffix in SOURCES and "__pycache__" not in path.parts)
+    passed_over = {"__pycache__", ".ipynb_checkpoints"}
+    files = sorted(p for p in folder.rglob("*") if p.suffix in SOURCES and passed_over.isdisjoint(p.parts))
     digest = hashlib.sha256()
     for path in files:
         digest.update(str(path.relative_to(folder)).encode())

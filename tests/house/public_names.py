@@ -12,6 +12,12 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 
+def python_files(*below):
+    """The Python files under a folder of the repository, without an editor's checkpoints."""
+    found = ROOT.joinpath(*below).rglob("*.py")
+    return sorted(path for path in found if not any(part.startswith(".") for part in path.relative_to(ROOT).parts))
+
+
 def module_of(path, source):
     """``polyfold/geometry/__init__.py`` to ``polyfold.geometry``."""
     return ".".join(path.relative_to(source).with_suffix("").parts).removesuffix(".__init__")
@@ -31,7 +37,7 @@ def names_in(path):
 
 def public_modules():
     """Module -> its public names, or None where ``__all__`` is missing, over the core."""
-    modules = {module_of(path, ROOT): path for path in sorted((ROOT / "polyfold").rglob("*.py"))}
+    modules = {module_of(path, ROOT): path for path in python_files("polyfold")}
     return {
         module: names_in(path)
         for module, path in modules.items()

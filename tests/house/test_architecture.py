@@ -10,11 +10,11 @@ from pathlib import Path
 import grimp
 import networkx
 import pytest
-from public_names import ROOT, is_private, public_modules
+from public_names import ROOT, is_private, public_modules, python_files
 
-CORE = sorted((ROOT / "polyfold").rglob("*.py"))
-PLUGINS = sorted((ROOT / "plugins").rglob("*.py"))
-BENCHMARKS = sorted((ROOT / "experiments").rglob("*.py"))
+CORE = python_files("polyfold")
+PLUGINS = python_files("plugins")
+BENCHMARKS = python_files("experiments")
 BUNDLED = sorted(folder.name for folder in (ROOT / "plugins").glob("polyfold_*"))
 
 LARGEST_MODULE = 15_000  # bytes
