@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from polyfold.errors import ConfigError
 
-__all__ = ["ComponentSpec", "Experiment", "load", "read_toml", "to_toml"]
+__all__ = ["ComponentSpec", "Experiment", "load_experiment", "read_toml", "to_toml"]
 
 
 class ComponentSpec(BaseModel):
@@ -61,7 +61,7 @@ class Experiment(BaseModel):
         return Experiment.of(**{**self.model_dump(), **settings})
 
 
-def load(path: str | Path) -> Experiment:
+def load_experiment(path: str | Path) -> Experiment:
     """Read an experiment from a TOML file. Raises ConfigError with the file and the wrong line or setting."""
     settings = read_toml(path)
     return _validated(settings, str(path))
@@ -93,7 +93,7 @@ def _validated(settings: dict[str, Any], source: str) -> Experiment:
 
 
 def to_toml(experiment: Experiment) -> str:
-    """The experiment as TOML that :func:`load` reads back to an equal experiment."""
+    """The experiment as TOML that :func:`load_experiment` reads back to an equal experiment."""
     import tomli_w
 
     tables: dict[str, Any] = {}

@@ -39,7 +39,7 @@ from typing import Any
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.types import Message
 
-__all__ = ["Example", "Prompt", "load_prompt", "prompt_folders", "prompt_names"]
+__all__ = ["Prompt", "load_prompt", "prompt_names"]
 
 MAX_TEXT = 2000
 """Longest text input, in characters."""

@@ -8,7 +8,7 @@ def test_toml_round_trip(tmp_path):
     experiment = config.Experiment.of(policy="farthest", simulator={"name": "xpbd", "thickness": 0.006})
     path = tmp_path / "experiment.toml"
     path.write_text(config.to_toml(experiment))
-    assert config.load(path) == experiment
+    assert config.load_experiment(path) == experiment
 
 
 @pytest.mark.parametrize(
@@ -24,12 +24,12 @@ def test_wrong_files_say_what_is_wrong(tmp_path, text, says):
     path = tmp_path / "wrong.toml"
     path.write_text(text)
     with pytest.raises(ConfigError, match=says):
-        config.load(path)
+        config.load_experiment(path)
 
 
 def test_missing_file():
     with pytest.raises(ConfigError, match="there is no file"):
-        config.load("nowhere.toml")
+        config.load_experiment("nowhere.toml")
 
 
 def test_override_leaves_the_original_alone():

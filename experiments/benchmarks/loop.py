@@ -17,7 +17,9 @@ from tqdm import tqdm
 
 from polyfold.api import attempt, garment
 from polyfold.config import Experiment
-from polyfold.logs import FoldRecord, KeyedRecord, RunDirectory, fold_record
+from polyfold.logs import FoldRecord, RunDirectory
+from polyfold.logs._records import KeyedRecord
+from polyfold.logs._writing import fold_record
 
 
 @dataclass(frozen=True)

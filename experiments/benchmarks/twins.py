@@ -22,7 +22,9 @@ from polyfold.api import attempt, garment, ground
 from polyfold.config import Experiment
 from polyfold.errors import PolyfoldError
 from polyfold.geometry import polygon_area
-from polyfold.logs import FoldRecord, KeyedRecord, RunDirectory, fold_record
+from polyfold.logs import FoldRecord, RunDirectory
+from polyfold.logs._records import KeyedRecord
+from polyfold.logs._writing import fold_record
 
 SETS = {
     "tshirts": ("tshirt", "fold the t-shirt in half from left to right"),

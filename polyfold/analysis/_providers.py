@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from polyfold.analysis._results import Results
 from polyfold.analysis._statistics import Estimate, ratio
 from polyfold.analysis._tables import Cell, Figure, Table
-from polyfold.logs import Account, StudyEpisodeRecord
+from polyfold.logs import StudyEpisodeRecord
+from polyfold.logs._accounts import Account
 
 Taken = Callable[[Account], float | None]
 """What a role took of something; None if it is unknown."""

@@ -1,6 +1,6 @@
 """From a sentence to a folded garment in one call, and where garments come from."""
 
-from polyfold.api._fold import attempt, fold, save
+from polyfold.api._fold import attempt, fold
 from polyfold.api._loaders import Grounded, garment, ground
 from polyfold.api._studies import open, run
 
@@ -12,5 +12,4 @@ __all__ = [
     "ground",
     "open",
     "run",
-    "save",
 ]

@@ -12,9 +12,11 @@ from polyfold import plugins, viz
 from polyfold.api._loaders import garment as named_garment
 from polyfold.config import Experiment
 from polyfold.errors import ConfigError
-from polyfold.evaluation import find_task, judge
+from polyfold.evaluation import judge
+from polyfold.evaluation._suites import find_task
 from polyfold.garments import Garment
-from polyfold.logs import fold_record, transcript_lines, write_atomically
+from polyfold.logs._files import write_atomically
+from polyfold.logs._writing import fold_record, transcript_lines
 from polyfold.plugins.interfaces import RecordsMotion, Simulator
 from polyfold.rollout import run_episode
 from polyfold.types import Episode, Observation

@@ -17,7 +17,8 @@ from polyfold.garments import Garment, Pattern
 from polyfold.garments._obj import load_obj
 from polyfold.garments._outline_files import load_mask, load_outline, load_picture, outline_from_photo
 from polyfold.garments._twin import twin_from_outline
-from polyfold.geometry import Camera, contour_of, fill_polygon
+from polyfold.geometry import Camera, contour_of
+from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins.interfaces import SewnKind
 from polyfold.types import Observation, Scene
 

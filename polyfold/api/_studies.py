@@ -6,8 +6,9 @@ from pathlib import Path
 
 from polyfold.analysis import Results, open_results
 from polyfold.logs import read_run
-from polyfold.studies import Study, evaluate
-from polyfold.viz import thumbnail
+from polyfold.studies import Study
+from polyfold.studies._run import evaluate
+from polyfold.viz._thumbnails import thumbnail
 
 
 def run(

@@ -7,8 +7,7 @@ import json
 from collections.abc import Sequence
 from typing import Any, get_args
 
-from polyfold import config
-from polyfold.config import ComponentSpec, Experiment
+from polyfold.config import ComponentSpec, Experiment, load_experiment
 from polyfold.errors import ConfigError
 
 KINDS = tuple(name for name, field in Experiment.model_fields.items() if field.annotation is ComponentSpec)
@@ -36,7 +35,7 @@ def add_component_options(parser: argparse.ArgumentParser, kinds: Sequence[str] 
 
 def experiment_from(arguments: argparse.Namespace) -> Experiment:
     """The experiment that the options describe. Raises ConfigError naming the wrong option."""
-    experiment = config.load(arguments.config) if arguments.config else Experiment()
+    experiment = load_experiment(arguments.config) if arguments.config else Experiment()
     given = {name: getattr(arguments, name, None) for name in (*KINDS, "guidance")}
     experiment = experiment.override({name: value for name, value in given.items() if value})
     for assignment in arguments.set:

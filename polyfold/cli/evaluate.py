@@ -6,7 +6,9 @@ import argparse
 from pathlib import Path
 
 import polyfold
-from polyfold.studies import PICTURES, Study, with_variants
+from polyfold.studies import Study
+from polyfold.studies._cell import PICTURES
+from polyfold.studies._study import with_variants
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -24,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the page and say where it is."""
-    from polyfold.viz.report import write_report
+    from polyfold.viz._report import write_report
 
     noise = None if arguments.noise_floor is None else polyfold.open(arguments.noise_floor)
     path = write_report(arguments.run_directory, arguments.out, noise)

@@ -52,6 +52,8 @@ def validation_problem(error: ValidationError, known: Iterable[str] = (), below:
     said = problem["msg"].removeprefix("Value error, ")
     # A model's own check may already say what to do.
     advises = problem["type"] == "value_error" and ";" in said
-    if not place:
-        return f"can't be used: {said}" if advises else f"has values that don't go together: {said}; change them"
-    return f"has a bad value for {place!r}: {said}{'' if advises else '; change it'}"
+    if advises:
+        return f"has a bad value for {place!r}: {said}" if place else f"can't be used: {said}"
+    if not problem["loc"]:
+        return f"has values that don't go together: {said}; change them"
+    return f"has a bad value{f' for {place!r}' if place else ''}: {said}; change it"

@@ -2,23 +2,14 @@
 
 from polyfold.geometry._camera import Camera
 from polyfold.geometry._fold_line import FoldLine
-from polyfold.geometry._masks import contour_of, fill_polygon, iou, span_on_mask
-from polyfold.geometry._plane import (
-    chamfer,
-    mirror,
-    polygon_area,
-    resample,
-    rotate,
-    signed_distance,
-    turn_onto,
-)
+from polyfold.geometry._masks import contour_of, iou, span_on_mask
+from polyfold.geometry._plane import chamfer, mirror, polygon_area, resample, rotate, signed_distance, turn_onto
 
 __all__ = [
     "Camera",
     "FoldLine",
     "chamfer",
     "contour_of",
-    "fill_polygon",
     "iou",
     "mirror",
     "polygon_area",

@@ -23,6 +23,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment
 from polyfold.plugins import hookspecs
+from polyfold.plugins._inspection import files_read, parameters, prompts_read
 from polyfold.plugins._traits import UsesComponents
 from polyfold.prompts import load_prompt
 
@@ -124,11 +125,11 @@ def fingerprint(
             folders[source.name] = source.folder
         if kind == "tasks":  # a file, and no class
             continue
-        for name in plugins.prompts_read(kind, spec):
+        for name in prompts_read(kind, spec):
             role, _, prompt_version = name.partition("@")
             prompt = load_prompt(role, prompt_version)
             prompts[prompt.name] = prompt.sha256
-        for path in plugins.files_read(kind, spec):
+        for path in files_read(kind, spec):
             files[path.name] = _digest_of_file(path)
     git = _git_states(folders) if commits else {}
     return Fingerprint(distributions=distributions, sources=sources, prompts=prompts, files=files, git=git)
@@ -144,7 +145,7 @@ def _specs(experiment: Experiment) -> Iterator[tuple[str, ComponentSpec]]:
         kind, spec = hookspecs.plural(field), getattr(experiment, field)
         yield kind, spec
         known = plugins.names(kind)
-        for value in plugins.parameters(kind, spec).values():
+        for value in parameters(kind, spec).values():
             if isinstance(value, str) and value.partition(":")[0] in known:
                 yield kind, ComponentSpec(name=value)
 

@@ -4,9 +4,7 @@ What each kind of component must do stands in :mod:`polyfold.plugins.interfaces`
 runs in :mod:`polyfold.plugins.hookspecs`. The functions here are the methods of the process's own :class:`Host`.
 """
 
-from polyfold.plugins._catalog import Component, Plugin, Problem
 from polyfold.plugins._host import HOST, Host
-from polyfold.plugins._inspection import files_read, parameter_names, parameters, prompts_read
 
 by_hand = HOST.by_hand
 catalog = HOST.catalog
@@ -26,27 +24,16 @@ unobserve = HOST.unobserve
 unregister = HOST.unregister
 
 __all__ = [
-    "Component",
     "Host",
-    "Plugin",
-    "Problem",
-    "by_hand",
     "catalog",
     "component_class",
     "create",
     "create_chosen",
-    "files_read",
     "find",
     "names",
-    "notify",
     "observe",
-    "parameter_names",
-    "parameters",
-    "portable",
-    "prompts_read",
     "refresh",
     "register",
-    "third_party",
     "unobserve",
     "unregister",
 ]

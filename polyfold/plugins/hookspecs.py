@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from polyfold.types import Episode, EpisodeStart, Role, Step
 
 
-__all__ = ["KINDS", "hookimpl", "hookspec"]
+__all__ = ["KINDS", "hookimpl"]
 
 hookspec = pluggy.HookspecMarker("polyfold")
 hookimpl = pluggy.HookimplMarker("polyfold")

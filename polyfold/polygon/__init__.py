@@ -5,19 +5,15 @@ A new kind of garment needs one :class:`Template`; see its docstring for a compl
 
 from polyfold.polygon._folded import FoldedModel
 from polyfold.polygon._generator import Generator, SymmetricGenerator
-from polyfold.polygon._layers import Facet
 from polyfold.polygon._penalties import Penalty, angle_range, offset_range, position_range, ratio_range
 from polyfold.polygon._template import Template
-from polyfold.polygon._vertices import VertexState
 
 __all__ = [
-    "Facet",
     "FoldedModel",
     "Generator",
     "Penalty",
     "SymmetricGenerator",
     "Template",
-    "VertexState",
     "angle_range",
     "offset_range",
     "position_range",

@@ -14,27 +14,21 @@ from numpy.typing import NDArray
 
 from polyfold import plugins
 from polyfold.errors import SimulationError
-from polyfold.evaluation import (
-    Comparison,
-    Reference,
-    accepted_tasks,
-    attribute,
-    attribute_open,
-    compare_end,
-    criteria,
-    final_mask,
-    first_mask,
-    ideal_reference,
-    reference_for,
-    suite,
-)
+from polyfold.evaluation import suite
+from polyfold.evaluation._attribution import attribute, attribute_open
+from polyfold.evaluation._criteria import criteria
+from polyfold.evaluation._judging import final_mask, first_mask
+from polyfold.evaluation._references import Reference, ideal_reference, reference_for
+from polyfold.evaluation._scoring import Comparison, compare_end
+from polyfold.evaluation._suites import accepted_tasks
 from polyfold.garments import Garment
 from polyfold.logs import StudyEpisodeRecord
 from polyfold.logs._records import BoundsRecord
 from polyfold.logs._writing import episode_fields, finite
 from polyfold.plugins.interfaces import Goal
-from polyfold.rollout import build_agent, run_episode
+from polyfold.rollout import run_episode
 from polyfold.rollout._inputs import GUIDED, PRIVILEGED
+from polyfold.rollout._loop import build_agent
 from polyfold.studies._cells import Cell
 from polyfold.studies._study import Study, experiment_of
 from polyfold.tasks import OpenTask, Task, fold_lines

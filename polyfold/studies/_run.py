@@ -14,17 +14,11 @@ from pathlib import Path
 
 from polyfold import plugins
 from polyfold.errors import ConfigError
-from polyfold.evaluation import criteria
-from polyfold.logs import (
-    Fingerprint,
-    MetricRecord,
-    RunDirectory,
-    StudyEpisodeRecord,
-    ThresholdRecord,
-    fingerprint,
-    picture_path,
-    write_atomically,
-)
+from polyfold.evaluation._criteria import criteria
+from polyfold.logs import RunDirectory, StudyEpisodeRecord
+from polyfold.logs._files import picture_path, write_atomically
+from polyfold.logs._fingerprint import Fingerprint, fingerprint
+from polyfold.logs._records import MetricRecord, ThresholdRecord
 from polyfold.plugins.interfaces import LabelledMetric, Metric, RoundedMetric
 from polyfold.studies._cell import PICTURES, Render, Scored, evaluate_with_picture
 from polyfold.studies._cells import Cell, cells

@@ -15,10 +15,10 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment, read_toml
 from polyfold.errors import ConfigError, did_you_mean, validation_problem
 from polyfold.plugins import hookspecs
+from polyfold.plugins._inspection import parameter_names
 
 Overrides = dict[str, Any]
 
@@ -165,7 +165,7 @@ def _check_parameters(experiment: Experiment, variant: str) -> None:
         spec = getattr(experiment, field)
         if not isinstance(spec, ComponentSpec):
             continue
-        known = plugins.parameter_names(hookspecs.plural(field), spec) if spec.params else ()
+        known = parameter_names(hookspecs.plural(field), spec) if spec.params else ()
         for parameter in spec.params:
             if parameter not in known:
                 raise ConfigError(

@@ -1,17 +1,13 @@
 """Folding tasks as data: suites, goals that leave the folds open, fold lines on a garment, the ideal result."""
 
 from polyfold.tasks._goals import OpenTask
-from polyfold.tasks._ideal import IdealFold, fold_ideally
 from polyfold.tasks._lines import fold_lines, mirror_line
-from polyfold.tasks._suite import Fold, Suite, Task, load_suite
+from polyfold.tasks._suite import Suite, Task, load_suite
 
 __all__ = [
-    "Fold",
-    "IdealFold",
     "OpenTask",
     "Suite",
     "Task",
-    "fold_ideally",
     "fold_lines",
     "load_suite",
     "mirror_line",

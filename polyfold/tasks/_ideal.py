@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.garments import Mesh
-from polyfold.geometry import Camera, FoldLine, fill_polygon, iou
+from polyfold.geometry import Camera, FoldLine, iou
+from polyfold.geometry._masks import fill_polygon
 from polyfold.polygon._covering import covered_area, overlap_area, shapes, solid_parts
 from polyfold.polygon._layers import Facet, cut_facets
 from polyfold.types import SimState

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from polyfold.errors import PlanError
 from polyfold.geometry import contour_of
-from polyfold.tasks import fold_ideally
+from polyfold.tasks._ideal import fold_ideally
 from polyfold.types import ActionMap, Episode, Step
 from polyfold.types._views import makes
-from polyfold.viz.draw._filmstrips import Frame, filmstrip
-from polyfold.viz.draw._overlays import overlay
-from polyfold.viz.draw._saving import png
+from polyfold.viz._draw._filmstrips import Frame, filmstrip
+from polyfold.viz._draw._overlays import overlay
+from polyfold.viz._draw._saving import png
 
 
 @makes(Episode, "filmstrip")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from polyfold.analysis import Results, column_of, estimate
+from polyfold.analysis import Results, estimate
+from polyfold.analysis._columns import column_of
 from polyfold.types._views import makes
 
 PALETTE = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c8c8c")

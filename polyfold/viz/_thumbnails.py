@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from polyfold.geometry import contour_of
 from polyfold.types import Episode, Step
+from polyfold.viz._draw._overlays import overlay
 from polyfold.viz._pictures import action_map_of
-from polyfold.viz.draw._overlays import overlay
 
 LIMIT = 40_000
 """Most bytes of a picture."""

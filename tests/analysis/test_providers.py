@@ -11,9 +11,10 @@ from polyfold.analysis import Results, estimate, open_results, provider_table
 from polyfold.analysis._providers import MEASURES, measured
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError
-from polyfold.logs import accounts, transcript_lines
+from polyfold.logs._accounts import accounts
 from polyfold.logs._records import FailureRecord
-from polyfold.rollout import Transcript
+from polyfold.logs._writing import transcript_lines
+from polyfold.rollout._transcript import Transcript
 from polyfold.types import Reply
 from polyfold.viz import provider_figure
 
@@ -210,7 +211,8 @@ def test_a_key_that_one_variant_lacks_is_reported_before_the_others_fold(tmp_pat
 
 @pytest.mark.parametrize("name", ["rules", "gpt-4o", "gemini-2.5-pro"])
 def test_the_papers_models_can_be_chosen_one_by_one(name):
-    from polyfold.studies import load, with_variants
+    from polyfold.studies import load
+    from polyfold.studies._study import with_variants
 
     study = load("experiments/llms.toml")
     assert len(study.variants) == 9

@@ -92,7 +92,7 @@ def test_floors_run_without_a_language_model(polyfold, agent):
 
 def shirt_mask():
     """A plain upright t-shirt, bool, shape (300, 300)."""
-    from polyfold.geometry import fill_polygon
+    from polyfold.geometry._masks import fill_polygon
 
     outline = [(90, 280), (90, 130), (60, 160), (20, 120), (90, 50), (125, 45), (150, 60), (175, 45), (210, 50)]
     outline += [(280, 120), (240, 160), (210, 130), (210, 280)]

@@ -4,7 +4,7 @@ import pytest
 import polyfold
 from polyfold import plugins
 from polyfold.api import attempt
-from polyfold.evaluation import criteria, succeeded
+from polyfold.evaluation._criteria import criteria, succeeded
 from polyfold.types import Outcome
 
 TASKS = ("square-triangle-top_left", "square-corner-bottom_right")

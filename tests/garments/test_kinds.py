@@ -4,7 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapes import KINDS, assert_sound, rims, triangle_areas
 
-from polyfold.geometry import fill_polygon, iou, polygon_area
+from polyfold.geometry import iou, polygon_area
+from polyfold.geometry._masks import fill_polygon
 
 SEEDS = st.integers(2000, 9999)
 OPEN_RIMS = {"square": 1, "rectangle": 1, "tshirt": 4, "pants": 3}

@@ -9,7 +9,8 @@ from shapes import KINDS
 from polyfold.errors import GarmentError, GroundingError
 from polyfold.garments import find_cloth
 from polyfold.garments._outline_files import load_mask, load_outline, outline_from_photo
-from polyfold.geometry import Camera, fill_polygon, iou, rotate
+from polyfold.geometry import Camera, iou, rotate
+from polyfold.geometry._masks import fill_polygon
 from polyfold.types import Observation
 
 TABLE = (236, 236, 232)

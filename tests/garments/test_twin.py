@@ -9,7 +9,8 @@ from shapes import KINDS, assert_sound, pattern, rims
 
 from polyfold.errors import GarmentError
 from polyfold.garments._twin import twin_from_outline
-from polyfold.geometry import fill_polygon, iou, polygon_area, rotate
+from polyfold.geometry import iou, polygon_area, rotate
+from polyfold.geometry._masks import fill_polygon
 
 SAMPLE = [json.loads(line) for line in (Path(__file__).parents[1] / "data" / "artf_sample.jsonl").open()]
 SIDES = ("left", "right")

@@ -7,7 +7,9 @@ import time
 import pytest
 
 from polyfold.errors import ConfigError
-from polyfold.logs import Fingerprint, KeyedRecord, RunDirectory, read_run
+from polyfold.logs import RunDirectory, read_run
+from polyfold.logs._fingerprint import Fingerprint
+from polyfold.logs._records import KeyedRecord
 
 
 class Score(KeyedRecord):

@@ -4,7 +4,7 @@ import pytest
 
 import polyfold
 from polyfold import plugins
-from polyfold.studies import evaluate
+from polyfold.studies._run import evaluate
 
 SMALL = {
     "name": "watched",

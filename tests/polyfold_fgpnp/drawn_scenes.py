@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from polyfold.geometry import contour_of, fill_polygon, rotate
+from polyfold.geometry import contour_of, rotate
+from polyfold.geometry._masks import fill_polygon
 from polyfold.polygon import FoldedModel
 from polyfold.types import Scene
 

@@ -15,7 +15,8 @@ from polyfold_fgpnp.training.runs import read_run
 from polyfold.analysis import open_results
 from polyfold.errors import ConfigError
 from polyfold.evaluation import suite
-from polyfold.logs import MetricRecord, RunDirectory, StudyEpisodeRecord
+from polyfold.logs import RunDirectory, StudyEpisodeRecord
+from polyfold.logs._records import MetricRecord
 from polyfold.studies import Study, load
 
 EPOCHS = 4

@@ -7,7 +7,7 @@ from PIL import Image
 import polyfold
 from polyfold import plugins
 from polyfold.cli import main
-from polyfold.viz.draw._style import MAP
+from polyfold.viz._draw._style import MAP
 
 
 class Farthest:

@@ -3,7 +3,8 @@
 import numpy as np
 
 from polyfold import plugins
-from polyfold.geometry import fill_polygon, rotate
+from polyfold.geometry import rotate
+from polyfold.geometry._masks import fill_polygon
 
 SIZE = 400
 

@@ -12,7 +12,8 @@ from polyfold_standard.templates.tshirt import tshirt_template
 from experiments.benchmarks.fitting.real import rasterised
 from polyfold import plugins
 from polyfold.errors import GroundingError
-from polyfold.geometry import fill_polygon, rotate
+from polyfold.geometry import rotate
+from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins.interfaces import Grounding
 from polyfold.polygon import SymmetricGenerator, Template, angle_range, ratio_range
 

@@ -15,10 +15,12 @@ from experiments.benchmarks.language.understanding import laid_garment, plan_ide
 from polyfold.api import run
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError, LLMError
-from polyfold.logs import accounts, transcript_lines
+from polyfold.logs._accounts import accounts
+from polyfold.logs._writing import transcript_lines
 from polyfold.plugins import create
 from polyfold.prompts import load_prompt
-from polyfold.rollout import Transcript, request_place
+from polyfold.rollout import request_place
+from polyfold.rollout._transcript import Transcript
 from polyfold.studies import Study
 from polyfold.types import Reply
 

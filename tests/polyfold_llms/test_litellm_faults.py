@@ -11,9 +11,9 @@ from polyfold_llms.retries import RetryPolicy, TransportError, call_with_retries
 from experiments.benchmarks.language.loopback import serve
 from experiments.benchmarks.language.understanding import laid_garment, plan_ideally
 from polyfold.errors import ConfigError, LLMAccessError, LLMError, PlanError, RefusedError
-from polyfold.logs import accounts
+from polyfold.logs._accounts import accounts
 from polyfold.plugins import create
-from polyfold.rollout import Transcript
+from polyfold.rollout._transcript import Transcript
 
 QUESTION = [{"role": "system", "content": "Answer."}, {"role": "user", "content": "Well?"}]
 

@@ -13,7 +13,7 @@ import polyfold
 from polyfold import plugins
 from polyfold.errors import ConfigError, PlanError, RefusedError
 from polyfold.plugins import create
-from polyfold.rollout import Transcript
+from polyfold.rollout._transcript import Transcript
 from polyfold.types import Subgoal
 
 SUBGOAL = Subgoal("fold the right edge leftward to the left edge")

@@ -12,11 +12,11 @@ from polyfold_planning.hierarchical import HierarchicalPlanner
 from experiments.benchmarks.language.understanding import laid_garment
 from polyfold.config import Experiment
 from polyfold.errors import PlanError, RefusedError
-from polyfold.geometry import fill_polygon
-from polyfold.logs import fingerprint
+from polyfold.geometry._masks import fill_polygon
+from polyfold.logs._fingerprint import fingerprint
 from polyfold.plugins import create
 from polyfold.prompts import load_prompt
-from polyfold.rollout import Transcript
+from polyfold.rollout._transcript import Transcript
 from polyfold.types import Reply, Scene, Subgoal
 
 

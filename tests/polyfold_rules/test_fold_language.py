@@ -18,10 +18,10 @@ from polyfold_rules.wishes.instruction import plan
 
 from experiments.benchmarks.language.understanding import accepted, judge_set, laid_garment, part_of_set, plan_ideally
 from polyfold.errors import RefusedError
-from polyfold.geometry import fill_polygon
+from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins import create, find
 from polyfold.prompts import load_prompt
-from polyfold.rollout import Transcript
+from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import OpenTask, load_suite
 from polyfold.tasks._goals import measure
 

@@ -10,9 +10,9 @@ import pytest
 
 from experiments.benchmarks.language.understanding import folded_states, laid_garment
 from polyfold.errors import RefusedError
-from polyfold.geometry import fill_polygon
+from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins import create, find
-from polyfold.rollout import Transcript
+from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import fold_lines, load_suite
 from polyfold.types import Scene, Subgoal
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import polyfold
-from polyfold.studies import experiment_of
+from polyfold.studies._study import experiment_of
 
 STUDIES = {path.stem: path for path in sorted((Path(__file__).parents[2] / "experiments").glob("*.toml"))}
 

@@ -12,8 +12,11 @@ import polyfold
 from polyfold.analysis import open_results
 from polyfold.config import ComponentSpec
 from polyfold.errors import ConfigError, GroundingError, SimulationError
-from polyfold.evaluation import reference_for, suite
-from polyfold.studies import cells, evaluate, experiment_of
+from polyfold.evaluation import suite
+from polyfold.evaluation._references import reference_for
+from polyfold.studies._cells import cells
+from polyfold.studies._run import evaluate
+from polyfold.studies._study import experiment_of
 
 SMALL = {"name": "small", "tasks": ("square-corner-*",), "garments": 2, "first_seed": 2000, "edge_length": 0.03}
 TIMES = {"seconds", "calls", "started", "finished", "peak_memory_mb"}

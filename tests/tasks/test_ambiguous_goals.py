@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from laid_flat import SUITE
 
-from polyfold.evaluation import accepted_tasks, known_tasks, suite
+from polyfold.evaluation import known_tasks, suite
+from polyfold.evaluation._suites import accepted_tasks
 from polyfold.tasks import OpenTask
 from polyfold.tasks._goals import measure
 

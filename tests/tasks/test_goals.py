@@ -12,12 +12,15 @@ from laid_flat import SUITE
 
 import polyfold
 from polyfold.errors import ConfigError
-from polyfold.evaluation import Reference, reference_for, suite
-from polyfold.geometry import fill_polygon, rotate
-from polyfold.studies import cells, evaluate_cell
+from polyfold.evaluation import suite
+from polyfold.evaluation._references import Reference, reference_for
+from polyfold.geometry import rotate
+from polyfold.geometry._masks import fill_polygon
+from polyfold.studies._cell import evaluate_cell
+from polyfold.studies._cells import cells
 from polyfold.tasks import load_suite
 from polyfold.tasks._goals import Bounds, measure
-from polyfold.viz.report import report_html
+from polyfold.viz._report import report_html
 
 SIZE = 400
 MEASURED = {"miou": 1.0, "moved-part": 0.0, "mppe": 0.0}

@@ -4,9 +4,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from laid_flat import KINDS, SUITE, lay
 
-from polyfold.geometry import FoldLine, fill_polygon, iou
-from polyfold.tasks import fold_ideally, fold_lines
-from polyfold.tasks._ideal import LAYER_THICKNESS, fidelity, fold_step_by_step
+from polyfold.geometry import FoldLine, iou
+from polyfold.geometry._masks import fill_polygon
+from polyfold.tasks import fold_lines
+from polyfold.tasks._ideal import LAYER_THICKNESS, fidelity, fold_ideally, fold_step_by_step
 from polyfold.types import SimState
 
 pixel = st.floats(60, 340)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from polyfold.geometry import FoldLine, contour_of, fill_polygon
+from polyfold.geometry import FoldLine, contour_of
+from polyfold.geometry._masks import fill_polygon
 from polyfold.polygon import FoldedModel
 from polyfold.types import Action, Scene
 

@@ -9,7 +9,7 @@ import pytest
 from polyfold import viz
 from polyfold.geometry import Camera, FoldLine
 from polyfold.types import Action, Observation
-from polyfold.viz.draw._style import ARMS, FOLD_LINE
+from polyfold.viz._draw._style import ARMS, FOLD_LINE
 
 
 def changed(before, after):

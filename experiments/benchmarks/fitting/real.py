@@ -15,7 +15,8 @@ from polyfold_standard.templates import shorts_template, towel_template, tshirt_
 from tqdm import tqdm
 
 from polyfold.errors import ConfigError, did_you_mean
-from polyfold.geometry import Camera, fill_polygon
+from polyfold.geometry import Camera
+from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins.interfaces import Grounding
 from polyfold.polygon import Template
 from polyfold.types import Observation

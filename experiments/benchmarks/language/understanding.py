@@ -26,11 +26,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import PlanError, RefusedError
-from polyfold.geometry import Camera, FoldLine, fill_polygon, rotate
+from polyfold.geometry import Camera, FoldLine, rotate
+from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins import create, find
 from polyfold.plugins.interfaces import Planner
 from polyfold.polygon import FoldedModel
-from polyfold.rollout import Transcript
+from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import Suite, Task, fold_lines, load_suite
 from polyfold.types import Scene
 

@@ -2,8 +2,10 @@ from io import BytesIO
 
 from PIL import Image
 
-from polyfold.evaluation import criteria, succeeded
-from polyfold.logs import Fingerprint, MetricRecord, RunRecord, StudyEpisodeRecord, ThresholdRecord
+from polyfold.evaluation._criteria import criteria, succeeded
+from polyfold.logs import RunRecord, StudyEpisodeRecord
+from polyfold.logs._fingerprint import Fingerprint
+from polyfold.logs._records import MetricRecord, ThresholdRecord
 
 TASKS = {
     "square-corner-top_left": ("square", "S-Corner"),

@@ -10,8 +10,8 @@ from polyfold.api import attempt
 from polyfold.errors import PlanError
 from polyfold.rollout import run_episode
 from polyfold.types import Action
-from polyfold.viz.draw._style import MAP
-from polyfold.viz.report import write_report
+from polyfold.viz._draw._style import MAP
+from polyfold.viz._report import write_report
 
 SMALL = {"name": "small", "tasks": ("square-corner-bottom_left",), "first_seed": 2000, "edge_length": 0.03}
 ASKED = []

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from polyfold.viz.report import write_report
+from polyfold.viz._report import write_report
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 

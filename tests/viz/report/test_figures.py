@@ -8,15 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made_up_runs import BAD, GOOD, picture, record
 
-import polyfold.viz.report
+import polyfold.viz._report
 from polyfold.analysis import estimate
-from polyfold.evaluation import criteria, succeeded
-from polyfold.viz.report._charts import Part, bar, curve_panel, dot
-from polyfold.viz.report._curves import SCALES, success_curve, wilson
-from polyfold.viz.report._gallery import gallery
-from polyfold.viz.report._source import open_source
+from polyfold.evaluation._criteria import criteria, succeeded
+from polyfold.viz._report._charts import Part, bar, curve_panel, dot
+from polyfold.viz._report._curves import SCALES, success_curve, wilson
+from polyfold.viz._report._gallery import gallery
+from polyfold.viz._report._source import open_source
 
-STYLE = (Path(polyfold.viz.report.__file__).parent / "style.css").read_text("utf-8")
+STYLE = (Path(polyfold.viz._report.__file__).parent / "style.css").read_text("utf-8")
 BLOCKS = [r"^:root", r"prefers-color-scheme: dark\) \{\s*:root"]
 
 values = st.fixed_dictionaries(

@@ -11,7 +11,7 @@ import polyfold
 from polyfold.analysis import open_results
 from polyfold.cli import main
 from polyfold.errors import ConfigError
-from polyfold.viz.report import report_html
+from polyfold.viz._report import report_html
 
 
 class Page(HTMLParser):

@@ -7,10 +7,11 @@ import polyfold
 from polyfold.analysis import open_results
 from polyfold.cli import main
 from polyfold.errors import ConfigError
-from polyfold.logs import picture_path
-from polyfold.studies import cells, evaluate, evaluate_cell
-from polyfold.viz import thumbnail
-from polyfold.viz._thumbnails import LIMIT
+from polyfold.logs._files import picture_path
+from polyfold.studies._cell import evaluate_cell
+from polyfold.studies._cells import cells
+from polyfold.studies._run import evaluate
+from polyfold.viz._thumbnails import LIMIT, thumbnail
 
 SMALL = {"name": "small", "tasks": ("square-corner-*",), "garments": 2, "first_seed": 2000, "edge_length": 0.03}
 TIMES = {"seconds", "steps", "calls", "started", "finished", "peak_memory_mb", "picture"}

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.geometry import signed_distance
-from polyfold.viz.draw._canvas import Canvas, Page, line_height, text_width, wrapped
-from polyfold.viz.draw._drawing import draw_model
-from polyfold.viz.draw._saving import save
-from polyfold.viz.draw._style import FAINT, INK, PAPER, Colour
+from polyfold.viz._draw._canvas import Canvas, Page, line_height, text_width, wrapped
+from polyfold.viz._draw._drawing import draw_model
+from polyfold.viz._draw._saving import save
+from polyfold.viz._draw._style import FAINT, INK, PAPER, Colour
 
 if TYPE_CHECKING:
     from polyfold.polygon import FoldedModel

@@ -11,13 +11,15 @@ from typing import Any
 
 import tomli_w
 
-from polyfold.analysis import Results, columns_of, noise_floor, table
-from polyfold.analysis._tabulation import REFERENCES
-from polyfold.logs import MetricRecord, write_atomically
+from polyfold.analysis import Results, table
+from polyfold.analysis._columns import columns_of
+from polyfold.analysis._tabulation import REFERENCES, noise_floor
+from polyfold.logs._files import write_atomically
+from polyfold.logs._records import MetricRecord
 from polyfold.types import Threshold
-from polyfold.viz.report._charts import percent_axis
-from polyfold.viz.report._curves import scaled
-from polyfold.viz.report._figures import (
+from polyfold.viz._report._charts import percent_axis
+from polyfold.viz._report._curves import scaled
+from polyfold.viz._report._figures import (
     cause_names,
     cause_rows,
     cause_table,
@@ -30,9 +32,9 @@ from polyfold.viz.report._figures import (
     time_rows,
     time_table,
 )
-from polyfold.viz.report._gallery import LIMIT, gallery
-from polyfold.viz.report._source import Source, open_source
-from polyfold.viz.report._tabular import comparison_html, table_html
+from polyfold.viz._report._gallery import LIMIT, gallery
+from polyfold.viz._report._source import Source, open_source
+from polyfold.viz._report._tabular import comparison_html, table_html
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 ASSETS = Path(__file__).parent

@@ -8,12 +8,14 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from polyfold.analysis import Column, Estimate, Figure, Table, columns_of, estimate
-from polyfold.evaluation import CAUSES
+from polyfold.analysis import Estimate, Table, estimate
+from polyfold.analysis._columns import Column, columns_of
+from polyfold.analysis._tables import Figure
+from polyfold.evaluation._attribution import CAUSES
 from polyfold.logs import StudyEpisodeRecord
-from polyfold.viz.report._charts import Part, bar, curve_panel, dot
-from polyfold.viz.report._curves import success_curve
-from polyfold.viz.report._source import Source
+from polyfold.viz._report._charts import Part, bar, curve_panel, dot
+from polyfold.viz._report._curves import success_curve
+from polyfold.viz._report._source import Source
 
 STAGES = ("reset", "subgoals", "grounding", "language", "policy", "execution")
 

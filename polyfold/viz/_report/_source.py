@@ -10,7 +10,8 @@ from pathlib import Path
 from polyfold.analysis import Results, open_results
 from polyfold.errors import PolyfoldError
 from polyfold.logs import StudyEpisodeRecord
-from polyfold.studies import Study, cells
+from polyfold.studies import Study
+from polyfold.studies._cells import cells
 from polyfold.types import Threshold
 
 

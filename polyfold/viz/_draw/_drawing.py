@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from polyfold.geometry import FoldLine, signed_distance, span_on_mask
 from polyfold.types import Action, ActionMap, Scene
-from polyfold.viz.draw._canvas import Canvas
-from polyfold.viz.draw._style import ARMS, FOLD_LINE, GOAL, MAP, PAPER, POLYGON, Colour
+from polyfold.viz._draw._canvas import Canvas
+from polyfold.viz._draw._style import ARMS, FOLD_LINE, GOAL, MAP, PAPER, POLYGON, Colour
 
 if TYPE_CHECKING:
-    from polyfold.polygon import Facet, FoldedModel
+    from polyfold.polygon import FoldedModel
+    from polyfold.polygon._layers import Facet
 
 
 Floats = NDArray[np.float64]

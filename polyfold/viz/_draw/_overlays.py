@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, ActionMap, Observation, Scene
-from polyfold.viz.draw._canvas import Canvas
-from polyfold.viz.draw._drawing import (
+from polyfold.viz._draw._canvas import Canvas
+from polyfold.viz._draw._drawing import (
     draw_action,
     draw_action_map,
     draw_fold_line,

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import ConfigError
-from polyfold.viz.draw._canvas import Page, fitted, line_height, wrapped
-from polyfold.viz.draw._saving import save
-from polyfold.viz.draw._style import FAINT, INK, RULE
+from polyfold.viz._draw._canvas import Page, fitted, line_height, wrapped
+from polyfold.viz._draw._saving import save
+from polyfold.viz._draw._style import FAINT, INK, RULE
 
 Image = NDArray[np.uint8]
 

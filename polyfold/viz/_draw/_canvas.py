@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from polyfold.viz.draw._style import INK, PAPER, Colour, font
+from polyfold.viz._draw._style import INK, PAPER, Colour, font
 
 Image = NDArray[np.uint8]
 

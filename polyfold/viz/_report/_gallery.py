@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from polyfold.logs import StudyEpisodeRecord
-from polyfold.viz.report._curves import smallest_scale
-from polyfold.viz.report._source import Source
+from polyfold.viz._report._curves import smallest_scale
+from polyfold.viz._report._source import Source
 
 LIMIT = 15_000_000
 """Most characters of all embedded pictures together."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from polyfold.analysis import Estimate
-from polyfold.viz.report._curves import SCALES, Curve
+from polyfold.viz._report._curves import SCALES, Curve
 
 COLOURS = 8
 """Colours of series in the style sheet; further series repeat them with another dash."""

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.viz.draw._animation import gif
-from polyfold.viz.draw._saving import png
+from polyfold.viz._draw._animation import gif
+from polyfold.viz._draw._saving import png
 
 Image = NDArray[np.uint8]
 

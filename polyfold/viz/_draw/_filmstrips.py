@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, ActionMap, Scene
-from polyfold.viz.draw._canvas import Page, line_height, text_width, wrapped
-from polyfold.viz.draw._overlays import overlay
-from polyfold.viz.draw._saving import save
-from polyfold.viz.draw._style import ARMS, FAINT, FOLD_LINE, GOAL, INK, MAP, RULE, Colour
+from polyfold.viz._draw._canvas import Page, line_height, text_width, wrapped
+from polyfold.viz._draw._overlays import overlay
+from polyfold.viz._draw._saving import save
+from polyfold.viz._draw._style import ARMS, FAINT, FOLD_LINE, GOAL, INK, MAP, RULE, Colour
 
 Image = NDArray[np.uint8]
 

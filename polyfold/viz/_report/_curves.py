@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from polyfold.evaluation import needed_scale
+from polyfold.evaluation._criteria import needed_scale
 from polyfold.logs import StudyEpisodeRecord
 from polyfold.types import Threshold
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import ConfigError
-from polyfold.viz.draw._canvas import resized
+from polyfold.viz._draw._canvas import resized
 
 Image = NDArray[np.uint8]
 

@@ -1,4 +1,0 @@
-"""One HTML page about an evaluation that needs nothing but itself: ``polyfold report``."""
-
-from polyfold.viz.report._page import report_html as report_html
-from polyfold.viz.report._page import write_report as write_report
