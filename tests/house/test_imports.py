@@ -13,7 +13,7 @@ HEAVY = ("torch", "numba", "pybullet", "litellm", "cv2", "matplotlib", "scipy", 
     [
         "import polyfold",
         "import polyfold; polyfold.Experiment; polyfold.FoldLine; polyfold.hookimpl",
-        "from polyfold.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass",
+        "from polyfold.cli import main\ntry: main(['--no-plugins', '--help'])\nexcept SystemExit: pass",
         "from polyfold.cli import main; main(['--no-plugins', 'plugins'])",
     ],
 )
