@@ -67,7 +67,7 @@ def test_no_files_import_each_other_in_a_circle():
     assert not [circle for circle in circles if len(circle) > 1]
 
 
-@pytest.mark.parametrize("path", [*PLUGINS, *BENCHMARKS], ids=name_of)
+@pytest.mark.parametrize("path", PLUGINS, ids=name_of)
 def test_outside_the_core_only_public_names_are_used(path):
     public = {module: names for module, names in public_modules().items() if names is not None}
     for module, name in of_core(path):
