@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from polyfold import plugins
+from polyfold.errors import PolyfoldError
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -23,10 +24,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _list_suites() -> None:
+    """A suite that can't be read is listed with what is wrong, so that the others are still found."""
     from polyfold.evaluation import suite
 
     for name in plugins.names("tasks"):
-        found = suite(name)
+        try:
+            found = suite(name)
+        except PolyfoldError as error:
+            print(f"{name:<16} ! {error}")
+            continue
         print(f"{name:<16} {len(found.tasks):>4} tasks {len(found.goals):>4} goals   {found.description}")
 
 

@@ -13,8 +13,8 @@ HEAVY = ("torch", "numba", "pybullet", "litellm", "cv2", "matplotlib", "scipy", 
     [
         "import polyfold",
         "import polyfold; polyfold.Experiment; polyfold.FoldLine; polyfold.hookimpl",
-        "from polyfold.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass",
-        "from polyfold.cli import main; main(['plugins'])",
+        "from polyfold.cli import main\ntry: main(['--no-plugins', '--help'])\nexcept SystemExit: pass",
+        "from polyfold.cli import main; main(['--no-plugins', 'plugins'])",
     ],
 )
 def test_light_paths_load_nothing_heavy(code):
@@ -25,7 +25,7 @@ def test_light_paths_load_nothing_heavy(code):
 
 def test_reading_parameters_of_components_loads_nothing_heavy():
     code = (
-        "from polyfold import plugins\n"
+        "from polyfold import plugins; plugins.refresh(third_party=False)\n"
         "for kind in 'simulators segmenters groundings planners policies llms agents garments'.split():\n"
         "    for name in plugins.names(kind):\n"
         "        getattr(plugins.component_class(kind, name), 'Config', None)\n"
