@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import tomllib
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from polyfold.errors import ConfigError
+from polyfold.errors import ConfigError, validation_problem
 
 __all__ = ["ComponentSpec", "Experiment", "load_experiment", "read_toml", "to_toml"]
 
@@ -79,17 +78,10 @@ def read_toml(path: str | Path) -> dict[str, Any]:
 
 
 def _validated(settings: dict[str, Any], source: str) -> Experiment:
-    for name in settings:
-        if name not in Experiment.model_fields:
-            close = get_close_matches(name, Experiment.model_fields, n=1)
-            hint = f"did you mean {close[0]!r}?" if close else f"the settings are {', '.join(Experiment.model_fields)}"
-            raise ConfigError(f"{source} has no setting {name!r}; {hint}")
     try:
         return Experiment(**settings)
     except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise ConfigError(f"{source} has a bad value for {where!r}: {first['msg']}; change it") from error
+        raise ConfigError(f"{source} {validation_problem(error, Experiment.model_fields)}") from error
 
 
 def to_toml(experiment: Experiment) -> str:

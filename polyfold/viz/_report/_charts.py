@@ -100,7 +100,7 @@ def curve_panel(heading: str, curves: Sequence[tuple[str, Curve]], bands: bool) 
     shades = Markup("").join(_band(index, curve) for index, _, curve in drawn) if bands else Markup("")
     lines = Markup("").join(_line(index, name, curve) for index, name, curve in reversed(drawn))
     labels = Markup("").join(_labels(drawn))
-    said = "; ".join(f"{name} {100 * curve.shares[_at_one()]:.0f} % at the preset" for _, name, curve in drawn)
+    said = "; ".join(f"{name} {100 * curve.shares[_at_one()]:.0f} % at 1×" for _, name, curve in drawn)
     return Markup(
         '<svg class="panel" viewBox="0 0 {} {}" role="img" aria-label="Success over thresholds, {}: {}">{}{}{}{}</svg>'
     ).format(WIDTH, HEIGHT, heading, said, _axes(), shades, lines, labels)
