@@ -1,1 +1,1 @@
-"""Measurements that can be run again: ``python -m polyfold.benchmark.<name>``."""
+"""Measurements that can be run again: ``python -m experiments.benchmarks.<name>``."""

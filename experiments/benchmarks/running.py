@@ -1,4 +1,4 @@
-"""How studies run: ``python -m polyfold.benchmark.running``. Workers, engines, and SIGKILL at random moments.
+"""How studies run: ``python -m experiments.benchmarks.running``. Workers, engines, and SIGKILL at random moments.
 
 The study is run by one worker, by two and on a Dask cluster of two, each with an empty cache of references, and once
 more while it is killed at random moments and started again. All must find the same to the bit.

@@ -148,6 +148,12 @@ def test_garments_draws_a_sheet(polyfold, tmp_path):
     assert Image.open(out).width > 300
 
 
+def test_garments_are_seen_by_the_simulator_that_is_named(polyfold, tmp_path):
+    result = polyfold("garments", "--simulator", "xpdb", "--out", tmp_path / "sheet.png")
+    assert result.status == 1
+    assert "did you mean 'xpbd'" in result.err
+
+
 def test_episode_shows_itself_in_jupyter():
     import polyfold
 

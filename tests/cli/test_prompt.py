@@ -11,6 +11,7 @@ def test_a_prompt_is_shown_as_the_model_gets_it_with_its_length(polyfold, monkey
     assert result.out.startswith("--- system\nYou plan how a robot")
     assert 'Instruction: "fold it like a letter"' in result.out
     assert "tokens (estimated" in result.out.splitlines()[-1]
+    assert '"temperature": 0.0' in result.out.splitlines()[-1]
 
 
 def test_a_later_step_shows_the_cloth_as_it_lies_then(polyfold):

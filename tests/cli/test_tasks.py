@@ -14,3 +14,16 @@ def test_an_unknown_suite_is_answered_with_the_nearest(polyfold):
     answer = polyfold("tasks", "polyfld70")
     assert answer.status == 1
     assert "did you mean 'polyfold70'" in answer.err
+
+
+def test_a_suite_that_cannot_be_read_hides_no_other(polyfold):
+    import polyfold as library
+
+    library.register("tasks", "torn", "polyfold_standard:no-such-file.toml")
+    try:
+        answer = polyfold("tasks")
+    finally:
+        library.plugins.unregister("tasks", "torn")
+    assert answer.status == 0
+    assert "torn             ! " in answer.out
+    assert "70 tasks" in answer.out
