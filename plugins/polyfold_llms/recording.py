@@ -85,11 +85,6 @@ class ReplayLLM:
         self._cassette = open_cassette(config.path.resolve())
         self.model = config.model or self._only_model()
 
-    @classmethod
-    def files_read(cls, config: Config) -> list[Path]:
-        """The cassette. That of ``record`` does not count: it grows as a run goes on, and what stands in it stays."""
-        return [config.path]
-
     def _only_model(self) -> str:
         recorded = recorded_models(self._cassette.entries())
         if len(recorded) == 1:

@@ -64,8 +64,17 @@ def _accepted(name: str, found: Suite, goal: OpenTask) -> tuple[Task, ...]:
 
 
 def known_tasks(kind: str) -> list[Task]:
-    """The tasks of all installed suites for a kind of garment."""
-    return [task for name in plugins.names("tasks") for task in suite(name).for_garment(kind)]
+    """The tasks of all installed suites for a kind of garment.
+
+    A suite that can't be read is passed over, with a warning and a problem recorded against its plugin.
+    """
+    found: list[Task] = []
+    for name in plugins.names("tasks"):
+        try:
+            found += suite(name).for_garment(kind)
+        except (ConfigError, PluginError) as error:
+            plugins.blame("tasks", name, f"its suite {name!r} was passed over: {error}")
+    return found
 
 
 def find_task(task_id: str, kind: str) -> Task:

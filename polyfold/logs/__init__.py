@@ -1,13 +1,14 @@
 """What is kept of runs on disk: typed records in append-only directories, with what they depend on."""
 
 from polyfold.logs._json_lines import JsonLines
-from polyfold.logs._records import EpisodeRecord, FoldRecord, RunRecord, StudyEpisodeRecord
+from polyfold.logs._records import EpisodeRecord, FoldRecord, KeyedRecord, RunRecord, StudyEpisodeRecord
 from polyfold.logs._run_directory import RunDirectory, read_episodes, read_run
 
 __all__ = [
     "EpisodeRecord",
     "FoldRecord",
     "JsonLines",
+    "KeyedRecord",
     "RunDirectory",
     "RunRecord",
     "StudyEpisodeRecord",

@@ -53,7 +53,7 @@ class Fingerprint(BaseModel):
         distributions: versions by name: Python, PolyFold, those of the plugins in use, and of numerical libraries.
         sources: SHA-256 by package: of the core's that decide results, and of every plugin in use.
         prompts: SHA-256 by ``role@version``, of those in use.
-        files: SHA-256 by name of the weights and cassettes in use.
+        files: SHA-256 by folder and name of what components read besides their source, such as weights.
         git: commit and whether it had local changes, by package that is used from a checkout.
     """
 
@@ -130,7 +130,7 @@ def fingerprint(
             prompt = load_prompt(role, prompt_version)
             prompts[prompt.name] = prompt.sha256
         for path in files_read(kind, spec):
-            files[path.name] = _digest_of_file(path)
+            files[f"{path.parent.name}/{path.name}"] = _digest_of_file(path)
     git = _git_states(folders) if commits else {}
     return Fingerprint(distributions=distributions, sources=sources, prompts=prompts, files=files, git=git)
 

@@ -6,6 +6,7 @@ runs in :mod:`polyfold.plugins.hookspecs`. The functions here are the methods of
 
 from polyfold.plugins._host import HOST, Host
 
+blame = HOST.blame
 by_hand = HOST.by_hand
 catalog = HOST.catalog
 component_class = HOST.component_class

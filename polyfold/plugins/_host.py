@@ -233,6 +233,11 @@ class Host:
                 summary = f"its observer {hook} failed ({type(error).__name__}: {error}); the run went on without it"
                 self._record(plugins.get(implementation.plugin_name), implementation.plugin_name, summary)
 
+    def blame(self, kind: str, name: str, problem: str) -> None:
+        """Record a problem with a component against those who registered it, and warn of it."""
+        for component in self.catalog().components[kind].get(name, []):
+            self._record(component.plugin, component.plugin.label, problem)
+
     def _record(self, plugin: Plugin | None, label: str, summary: str) -> None:
         if plugin is not None and all(problem.summary != summary for problem in plugin.problems):
             plugin.problems.append(Problem(summary, traceback.format_exc()))

@@ -39,7 +39,7 @@ class UsesComponents(Protocol):
 
 @runtime_checkable
 class ReadsFiles(Protocol):
-    """A component that reads files besides its source: weights, cassettes. They belong to a run's fingerprint."""
+    """A component that reads files besides its source: such as weights. They belong to a run's fingerprint."""
 
     @classmethod
     def files_read(cls, config: Any) -> Sequence[Path]:

@@ -6,6 +6,7 @@ from hypothesis.extra.numpy import arrays
 
 from polyfold import geometry
 from polyfold.geometry import FoldLine
+from polyfold.geometry._masks import fill_polygon
 
 coordinate = st.floats(-500, 500, allow_nan=False).map(lambda value: round(value, 3))
 point = st.tuples(coordinate, coordinate)
@@ -64,7 +65,7 @@ def test_rotation_keeps_distances_and_returns(points, angle, centre):
 def test_contour_runs_along_the_true_edge(width, height, angle):
     corners = np.array([(-width, -height), (width, -height), (width, height), (-width, height)]) / 2
     polygon = geometry.rotate(corners, angle) + 199.5
-    contour = geometry.contour_of(geometry.fill_polygon(polygon, 400, 400))
+    contour = geometry.contour_of(fill_polygon(polygon, 400, 400))
     inside = geometry.rotate(contour - 199.5, -angle)
     beyond = np.maximum(np.abs(inside[:, 0]) - width / 2, np.abs(inside[:, 1]) - height / 2)
     assert np.abs(beyond).max() < 1.5

@@ -63,8 +63,7 @@ def report_html(folder: str | Path, noise: Results | None = None) -> str:
 
     Args:
         folder: run directory of an evaluation, finished or not.
-        noise: a study of what differs without meaning, see :func:`polyfold.results.noise_floor`; it becomes a footnote
-            to the comparisons.
+        noise: a study of what differs without meaning; it becomes a footnote to the comparisons.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
