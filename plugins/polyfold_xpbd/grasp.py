@@ -59,7 +59,7 @@ class Motion:
 
 
 def take_hold(action: Action, positions: NDArray[np.float64], camera: Camera, thickness: float) -> Grasp | None:
-    """The particles under each pick, all layers; None if every pick is off the cloth."""
+    """The particles at ``positions`` [m], shape (N, 3), under each pick, all layers; None if there are none."""
     distances = np.empty((action.arms, len(positions)))
     for arm, pick in enumerate(action.picks):
         ray = camera.to_world(pick, positions[:, 2])

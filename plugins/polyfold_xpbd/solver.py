@@ -100,7 +100,11 @@ class Solver:
         return self._normals
 
     def contact_memory(self) -> dict[str, NDArray[Any]]:
-        """On which side of each other near particles belong."""
+        """On which side of each other near particles belong.
+
+        Those near particle i are ``pair_second[pair_start[i]:pair_start[i + 1]]``, shapes (P,) and (N + 1,);
+        ``pair_side``, shape (P, 2), says on which side of i they are, and i of them: -1, 0 (not known yet) or 1.
+        """
         count = self._start[-1]
         return {
             "pair_start": self._start.copy(),
@@ -111,7 +115,13 @@ class Solver:
     def set_state(
         self, positions: NDArray[np.float64], velocities: NDArray[np.float64], memory: Mapping[str, Any]
     ) -> None:
-        """Return to an earlier state; without memory, sides are taken from the geometry."""
+        """Return to an earlier state.
+
+        Args:
+            positions: of the particles [m], shape (N, 3).
+            velocities: of the particles [m/s], shape (N, 3).
+            memory: what :meth:`contact_memory` gave then; without it, sides are taken from the geometry.
+        """
         self.x[:] = positions
         self.v[:] = velocities
         self._start[:] = memory.get("pair_start", 0)

@@ -6,13 +6,21 @@ import shutil
 import numpy as np
 import pytest
 from few_folds import interaction
-from polyfold_fgpnp.data.dataset import Dataset, DatasetFolder
+from polyfold_fgpnp.data.dataset import Dataset, DatasetFolder, load_dataset
+from polyfold_fgpnp.policies.actions import PickConfig
+from polyfold_fgpnp.policies.affordance import affordance
 from polyfold_fgpnp.policies.networks import NetworkConfig
-from polyfold_fgpnp.training.training import TrainingConfig, train
+from polyfold_fgpnp.policies.region import fold_region
+from polyfold_fgpnp.training.config import TrainingConfig
+from polyfold_fgpnp.training.training import train
 
+import polyfold
 from experiments.benchmarks.policies import heldout
 from experiments.benchmarks.policies.heldout_tables import correlation_table, over_garments, regret_table, tried
+from polyfold import plugins
 from polyfold.analysis import estimate
+from polyfold.errors import PlanError
+from polyfold.logs import JsonLines
 
 
 @pytest.fixture(scope="module")
@@ -43,9 +51,35 @@ def test_tables_of_policies_and_maps(folder, capsys):
     assert [row[0] for row in first[1:]] == ["distance", "affordance", f"csam+caso={weights}"]
     assert [row[0] for row in second[1:]] == ["random first pick", "caso", rows[3][0], "best of the picks tried"]
     table = dict(zip((row[0] for row in second[1:]), second[1:], strict=True))
-    assert mean(table["caso"][2]) < mean(table["random first pick"][2]), "affordance beats chance"
-    assert mean(table["best of the picks tried"][2]) < mean(table["random first pick"][2])
+    data = load_dataset(folder)
+    outcomes = [data.error_mm[trials] for trials in tried(data)]
+    executed = [record["error_mm"] for record in JsonLines(folder / "policies" / "caso.jsonl").read()]
+    for name, errors in (
+        ("random first pick", [found.mean() for found in outcomes]),
+        ("best of the picks tried", [found.min() for found in outcomes]),
+        ("caso", executed),
+    ):
+        assert table[name][1] == str(data.states)
+        assert mean(table[name][2]) == pytest.approx(np.mean(errors), abs=0.06), name
     assert "over 2 garments" in text
+
+
+def test_a_policy_that_refuses_counts_as_leaving_the_cloth_as_it_is(folder):
+    polyfold.register("policies", "refusing", Refusing, "a test's policy")
+    try:
+        heldout.main([str(folder), "refusing"])
+    finally:
+        plugins.unregister("policies", "refusing")
+    records = JsonLines(folder / "policies" / "refusing.jsonl").read()
+    errors = [error for record in sorted(records, key=lambda record: record["job"]) for error in record["error_mm"]]
+    assert errors == pytest.approx(load_dataset(folder)["travel_mm"], rel=1e-6)
+
+
+class Refusing:
+    """Picks nowhere."""
+
+    def act(self, fold_line, scene, rng):
+        raise PlanError("nothing to see here; move on")
 
 
 def test_what_was_folded_is_kept_and_not_folded_again(folder, capsys):
@@ -82,6 +116,15 @@ def test_a_prediction_that_orders_all_picks_right_has_rank_correlation_one(folds
     assert mean(column(reversed_, "particles: median")["distance"]) == -1.0
     assert column(table, "states")["distance"] == str(folds.states)
     assert column(table, "picks")["distance"] == "3-3"
+
+
+def test_the_prediction_by_affordance_orders_picks_by_affordance(folds):
+    scores = []
+    for state, first, second in zip(folds["trial_state"], folds["first"], folds["second"], strict=True):
+        region = fold_region(folds.line(state), folds.scene(state))
+        scores.append(affordance(region, first.astype(float), second.astype(float), PickConfig().gamma))
+    table = correlation_table(with_outcomes(folds, 2000 * (2 - np.array(scores))), {})
+    assert mean(column(table, "particles: mean")["affordance"]) == 1.0
 
 
 def test_regret_is_against_the_picks_tried_whoever_else_is_there(folds):

@@ -145,7 +145,7 @@ def cloth_mask(observation: Observation) -> NDArray[np.bool_]:
 
 
 def random_action(mask: NDArray[np.bool_], rng: np.random.Generator) -> tuple[Action, FoldLine]:
-    """A random fold line across the cloth; one random pick on the outline left of it, the other far from the first."""
+    """A random fold line across a cloth, bool, shape (H, W), and picks: a random one on its outline, one far off."""
     outline = contour_of(mask)
     height, width = mask.shape
     while True:

@@ -55,7 +55,7 @@ def over_garments(data: Dataset, values: Floats) -> Estimate:
 
 
 def tried(data: Dataset) -> Iterator[NDArray[np.int64]]:
-    """For each state the trials with random first picks that have an outcome."""
+    """For each state the indices of its trials with random first picks that have an outcome, shape (K,)."""
     trials = data.of_recipes(RECIPE)
     for state in range(data.states):
         yield trials[data["trial_state"][trials] == state]

@@ -69,7 +69,12 @@ class DatasetFolder:
         return {int(path.stem) for path in (self.path / "shards").glob("*.npz")}
 
     def write(self, job: int, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Write a job's shard; a data set that was finished is being extended then, and no longer complete."""
+        """Write a job's shard; a data set that was finished is being extended then, and no longer complete.
+
+        Args:
+            job: which.
+            arrays: its columns, of the shapes that the module's docstring names.
+        """
         if self._found["complete"]:
             before = {name: self._found[name] for name in ("counts", "hash")}
             self._found = self._describe({"complete": False, **before})
@@ -159,7 +164,7 @@ class Dataset:
         return Scene(garment_kind, (IMAGE[1], IMAGE[0]), mask, contour_of(mask), None, "{}")
 
     def of_recipes(self, *recipes: str) -> NDArray[np.int64]:
-        """Trials of these recipes that have an outcome."""
+        """Indices of the trials of these recipes that have an outcome, shape (K,)."""
         wanted = [list(RECIPES).index(recipe) for recipe in recipes]
         return np.flatnonzero(np.isin(self["recipe"], wanted) & ~self["diverged"])
 

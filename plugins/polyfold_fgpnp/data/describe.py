@@ -36,6 +36,14 @@ def pick_sheet(data: Dataset, path: str | Path | None = None, states: int = STAT
     """For states spread over the data: the picks with the highest, median and lowest particle reward, and results.
 
     In results, red cloth lies where it should not and blue is what it should cover.
+
+    Args:
+        data: what to show.
+        path: PNG to write.
+        states: how many.
+
+    Returns:
+        The sheet, uint8, shape (H, W, 3).
     """
     cards = []
     rewards = {name: data.reward(name) for name in ("particles", "contour")}

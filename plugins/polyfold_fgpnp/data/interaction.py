@@ -227,7 +227,7 @@ def execute(
 
 
 def explore(interaction: Interaction, job: int) -> dict[str, NDArray[Any]]:
-    """One job as the arrays of a shard (see :mod:`polyfold_fgpnp.data.dataset`)."""
+    """One job as the arrays of a shard, of the shapes that :mod:`polyfold_fgpnp.data.dataset` names."""
     states: list[dict[str, Any]] = []
     trials: list[dict[str, Any]] = []
     for simulator, segmenter, situation in situations(interaction, job):

@@ -102,7 +102,7 @@ def expect(region: FoldRegion, mask: NDArray[np.bool_], state: SimState) -> Expe
 
 
 def mirrored_mask(region: FoldRegion) -> NDArray[np.bool_]:
-    """The partial mask reflected across the line."""
+    """A region's mask reflected across its line, bool, shape (H, W)."""
     import cv2
 
     origin, right, below = region.fold_line.mirror([(0, 0), (1, 0), (0, 1)])
@@ -115,6 +115,10 @@ def contour_reward(chamfer_px: ArrayLike, idle_chamfer_px: ArrayLike) -> Floats:
     """R = beta - alpha D with D in units of what doing nothing costs: 1 is ideal, 0 as good as nothing (Sec. IV-D).
 
     So it does not depend on the camera, the garment's size or the flap's. It can be negative.
+
+    Args:
+        chamfer_px: distances of contours from the expected ones [px], shape (...).
+        idle_chamfer_px: of the contours before the folds [px], shape (...).
     """
     return BETA - ALPHA * np.asarray(chamfer_px, float) / np.maximum(np.asarray(idle_chamfer_px, float), LEAST_IDLE_PX)
 
@@ -123,5 +127,9 @@ def particle_reward(error_mm: ArrayLike, travel_mm: ArrayLike) -> Floats:
     """1 - error of flap and rest / travel: 1 is ideal, 0 as good as nothing. Privileged: it needs the particles.
 
     By the flap alone, picks near the crease look best on small thick flaps: they lay it down well and drag the rest.
+
+    Args:
+        error_mm: errors of flap and rest [mm], shape (...).
+        travel_mm: how far the flaps have to go [mm], shape (...).
     """
     return 1.0 - np.asarray(error_mm, float) / np.asarray(travel_mm, float)
