@@ -10,12 +10,9 @@ from polyfold_planning.grammar import check_subgoal
 from polyfold_planning.hierarchical import HierarchicalPlanner
 
 from experiments.benchmarks.language.understanding import laid_garment
-from polyfold.config import Experiment
 from polyfold.errors import PlanError, RefusedError
 from polyfold.geometry._masks import fill_polygon
-from polyfold.logs._fingerprint import fingerprint
 from polyfold.plugins import create
-from polyfold.prompts import load_prompt
 from polyfold.rollout._transcript import Transcript
 from polyfold.types import Reply, Scene, Subgoal
 
@@ -111,21 +108,6 @@ def test_parameters_reach_the_model_over_the_prompts_own():
     _, conversation = plan(GOOD, params={"temperature": 0.7})
     assert conversation.calls[0].params["temperature"] == 0.7
     assert "max_tokens" in conversation.calls[0].params
-
-
-@pytest.mark.parametrize(
-    ("planner", "prompts"),
-    [
-        ("hierarchical", {"subgoals@v1", "fold_line@v1", "fold_line@keypoints-v1", "fold_line@image-v1"}),
-        ("direct-2arm", {"subgoals@v1", "direct_2arm@v1", "direct_2arm@keypoints-v1"}),
-        ("zero-shot-vlm", {"zero_shot@v1"}),
-    ],
-)
-def test_a_run_depends_on_the_prompts_that_its_planner_may_use(planner, prompts):
-    found = fingerprint([Experiment(planner=planner)]).prompts
-    assert prompts <= set(found)
-    assert {name.partition("@")[0] for name in found} == {name.partition("@")[0] for name in prompts}
-    assert found[min(prompts)] == load_prompt(*min(prompts).split("@")).sha256
 
 
 @pytest.mark.parametrize(
