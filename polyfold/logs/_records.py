@@ -1,5 +1,6 @@
 """The typed log: what is kept of runs, episodes, steps and calls, as pydantic models with a schema version.
 
+Values that are plain already (:class:`polyfold.types.Reply`, ``Failure``, ``Threshold``) stand in them as they are.
 Everything that is shown of a run (tables, reports, pictures of results) is read from these records and from nothing
 else. A file of an unknown schema version is refused, never guessed at.
 """
@@ -16,6 +17,7 @@ from polyfold.config import Experiment
 from polyfold.logs._accounts import Account, accounts
 from polyfold.logs._fingerprint import Fingerprint
 from polyfold.logs._host import HostRecord
+from polyfold.types import Failure, Reply, Threshold
 
 SCHEMA_VERSION = 2
 """Of the log's files. Version 1 is read too (:mod:`polyfold.logs._schema_1`)."""
@@ -60,24 +62,6 @@ class StepRecord(LogRecord):
     values_picks: bool = False
 
 
-class ReplyRecord(LogRecord):
-    """A language model's answer; see :class:`polyfold.types.Reply`."""
-
-    text: str
-    reasoning: str | None = None
-    finish: str = "stop"
-    refusal: str | None = None
-    usage: dict[str, int] = Field(default_factory=dict)
-    cost: float | None = None
-    latency_s: float = 0.0
-    attempts: int = 1
-    model_served: str = ""
-    cost_source: str = ""
-    wall_s: float = 0.0
-    faults: tuple[str, ...] = ()
-    origin: str = "live"
-
-
 class CallRecord(LogRecord):
     """One request to a language model; see :class:`polyfold.types.Call`.
 
@@ -92,16 +76,9 @@ class CallRecord(LogRecord):
     params: dict[str, Any]
     messages: tuple[dict[str, Any], ...] | None
     messages_sha256: str
-    reply: ReplyRecord | None = None
+    reply: Reply | None = None
     error: str | None = None
     rejected: str | None = None
-
-
-class FailureRecord(LogRecord):
-    """Why an episode ended early; see :class:`polyfold.types.Failure`."""
-
-    stage: str
-    reason: str
 
 
 class FidelityRecord(LogRecord):
@@ -162,7 +139,7 @@ class EpisodeRecord(LogRecord):
     subgoals: tuple[str, ...]
     steps: tuple[StepRecord, ...]
     calls: tuple[CallRecord, ...] = ()
-    failure: FailureRecord | None
+    failure: Failure | None
     fidelity: FidelityRecord | None = None
     seconds: dict[str, float]
     started: datetime | None
@@ -315,14 +292,6 @@ class MetricRecord(LogRecord):
         return f"{self.label} [{self.unit}]" if self.unit else self.label
 
 
-class ThresholdRecord(LogRecord):
-    """A bound of a success criterion; see :class:`polyfold.types.Threshold`."""
-
-    metric: str
-    bound: float
-    higher_is_better: bool = False
-
-
 class ChangeRecord(LogRecord):
     """A run that went on knowingly although what it depends on had changed.
 
@@ -358,5 +327,5 @@ class RunRecord(LogRecord):
     fingerprint: Fingerprint | None
     host: HostRecord | None
     metrics: dict[str, MetricRecord] = Field(default_factory=dict)
-    criteria: dict[str, tuple[ThresholdRecord, ...]] = Field(default_factory=dict)
+    criteria: dict[str, tuple[Threshold, ...]] = Field(default_factory=dict)
     changes: tuple[ChangeRecord, ...] = ()

@@ -27,8 +27,8 @@ from polyfold.logs._records import (
     MetricRecord,
     RunRecord,
     StudyEpisodeRecord,
-    ThresholdRecord,
 )
+from polyfold.types import Threshold
 
 Record = TypeVar("Record", bound=KeyedRecord)
 Model = TypeVar("Model", bound=BaseModel)
@@ -58,7 +58,7 @@ class RunDirectory(Generic[Record]):
         record_type: type[Record],
         fingerprint: Fingerprint | None = None,
         metrics: Mapping[str, MetricRecord] | None = None,
-        criteria: Mapping[str, tuple[ThresholdRecord, ...]] | None = None,
+        criteria: Mapping[str, tuple[Threshold, ...]] | None = None,
     ) -> None:
         self.path = Path(path)
         self.path.mkdir(parents=True, exist_ok=True)

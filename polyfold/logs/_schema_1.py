@@ -13,13 +13,12 @@ from polyfold.logs._accounts import Account
 from polyfold.logs._fingerprint import Fingerprint
 from polyfold.logs._records import (
     BoundsRecord,
-    FailureRecord,
     GarmentRecord,
     MetricRecord,
     RunRecord,
     StudyEpisodeRecord,
-    ThresholdRecord,
 )
+from polyfold.types import Failure, Threshold
 
 SCHEMA_VERSION = 1
 
@@ -38,9 +37,9 @@ METRICS = {
 }
 CRITERIA = {
     name: (
-        ThresholdRecord(metric="miou", bound=overlap, higher_is_better=True),
-        ThresholdRecord(metric="mppe", bound=particles),
-        ThresholdRecord(metric="moved-part", bound=moved),
+        Threshold("miou", overlap, higher_is_better=True),
+        Threshold("mppe", particles),
+        Threshold("moved-part", moved),
     )
     for name, overlap, particles, moved in (("lenient", 0.80, 30.0, 40.0), ("strict", 0.90, 12.5, 20.0))
 }
@@ -80,7 +79,7 @@ def episode_record(line: Mapping[str, Any]) -> StudyEpisodeRecord:
         subgoals=tuple(line["subgoals"]),
         steps=(),
         recorded_folds=(line["steps"], line.get("retries", 0)),
-        failure=None if failure is None else FailureRecord(stage=failure["stage"], reason=failure["reason"]),
+        failure=None if failure is None else Failure(stage=failure["stage"], reason=failure["reason"]),
         seconds=line["seconds"],
         started=None,
         finished=None,

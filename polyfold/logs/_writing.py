@@ -6,7 +6,6 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
@@ -18,16 +17,14 @@ from polyfold.logs._fingerprint import fingerprint
 from polyfold.logs._host import processor, this_host
 from polyfold.logs._records import (
     CallRecord,
-    FailureRecord,
     FidelityRecord,
     FoldLineRecord,
     FoldRecord,
     GarmentRecord,
     Pixel,
-    ReplyRecord,
     StepRecord,
 )
-from polyfold.types import Call, Episode, Failure, Fidelity, Step
+from polyfold.types import Call, Episode, Fidelity, Step
 from polyfold.types._views import makes
 
 
@@ -74,7 +71,7 @@ def episode_fields(
         "subgoals": tuple(subgoal.text for subgoal in episode.subgoals),
         "steps": tuple(_step(step) for step in episode.steps),
         "calls": tuple(call_record(call, keep_messages) for call in episode.calls),
-        "failure": _failure(episode.failure),
+        "failure": episode.failure,
         "seconds": _seconds(episode.seconds),
         "started": started,
         "finished": finished,
@@ -93,7 +90,7 @@ def call_record(call: Call, keep_messages: bool = True) -> CallRecord:
         params=dict(call.params),
         messages=tuple(messages) if keep_messages else None,
         messages_sha256=hashlib.sha256(text.encode()).hexdigest(),
-        reply=None if call.reply is None else ReplyRecord(**asdict(call.reply)),
+        reply=call.reply,
         error=call.error,
         rejected=call.rejected,
     )
@@ -132,10 +129,6 @@ def _step(step: Step) -> StepRecord:
         retry=step.retry,
         values_picks=step.action_map is not None,
     )
-
-
-def _failure(failure: Failure | None) -> FailureRecord | None:
-    return None if failure is None else FailureRecord(stage=failure.stage, reason=failure.reason)
 
 
 def _fidelity(fidelity: Fidelity | None) -> FidelityRecord | None:

@@ -18,7 +18,7 @@ from polyfold.evaluation._criteria import criteria
 from polyfold.logs import RunDirectory, StudyEpisodeRecord
 from polyfold.logs._files import picture_path, write_atomically
 from polyfold.logs._fingerprint import Fingerprint, fingerprint
-from polyfold.logs._records import MetricRecord, ThresholdRecord
+from polyfold.logs._records import MetricRecord
 from polyfold.plugins.interfaces import LabelledMetric, Metric, RoundedMetric
 from polyfold.studies._cell import PICTURES, Render, Scored, evaluate_with_picture
 from polyfold.studies._cells import Cell, cells
@@ -70,7 +70,7 @@ def evaluate(
         StudyEpisodeRecord,
         now,
         metric_records(study),
-        threshold_records(study),
+        criteria(study.criteria),
     )
     done = {key: record for key, record in run.records().items() if not record.unanswered}
     missing = [cell for cell in wanted if cell.key not in done]
@@ -120,14 +120,6 @@ def _metric_record(name: str) -> MetricRecord:
         higher_is_better=metric.higher_is_better,
         summary=plugins.find("metrics", name).summary,
     )
-
-
-def threshold_records(study: Study) -> dict[str, tuple[ThresholdRecord, ...]]:
-    """Bounds of the study's criteria, by name."""
-    return {
-        name: tuple(ThresholdRecord(**vars(threshold)) for threshold in thresholds)
-        for name, thresholds in criteria(study.criteria).items()
-    }
 
 
 def _with_picture(folder: Path, cell: Cell, record: StudyEpisodeRecord, picture: bytes | None) -> StudyEpisodeRecord:

@@ -12,10 +12,9 @@ from polyfold.analysis._providers import MEASURES, measured
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError
 from polyfold.logs._accounts import accounts
-from polyfold.logs._records import FailureRecord
 from polyfold.logs._writing import transcript_lines
 from polyfold.rollout._transcript import Transcript
-from polyfold.types import Reply
+from polyfold.types import Failure, Reply
 from polyfold.viz import provider_figure
 
 TASKS = ("square-corner-top_left", "square-corners-top_left-top_right")
@@ -136,7 +135,7 @@ def test_a_cost_that_some_episodes_lack_says_on_how_many_it_rests(results):
 def test_the_note_says_what_was_recorded_and_what_was_never_answered(results):
     language = accounted(results.of("paid")[-1], origins=("recorded",))
     assert "Answers: recorded (paid)" in provider_table(changed(results, "paid", recorded_language=language)).note
-    unanswered = changed(results, "hasty", failure=FailureRecord(stage="unanswered", reason="429"))
+    unanswered = changed(results, "hasty", failure=Failure("unanswered", "429"))
     assert "hasty 1" in provider_table(unanswered).note
     assert "hasty 1" not in provider_table(results).note
 

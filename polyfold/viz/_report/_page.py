@@ -115,7 +115,7 @@ def _content(source: Source) -> dict[str, Any]:
         "goals": any(record.steps_wanted is None for record in source.records),
         "first": first,
         "run": source.results.run,
-        "criteria": {name: _bounds(source, bounds) for name, bounds in source.criteria.items()},
+        "criteria": {name: _bounds(source, bounds) for name, bounds in source.results.run.criteria.items()},
         "bounded": [threshold.metric for threshold in source.own_criterion],
         "reference": REFERENCES[study.reference],
         "configuration": _toml(study.model_dump(mode="json")),

@@ -40,17 +40,9 @@ class Source:
         return self.results.records
 
     @property
-    def criteria(self) -> Mapping[str, Sequence[Threshold]]:
-        """Bounds by criterion, the study's own first."""
-        return {
-            name: [Threshold(**bound.model_dump()) for bound in bounds]
-            for name, bounds in self.results.run.criteria.items()
-        }
-
-    @property
     def own_criterion(self) -> Sequence[Threshold]:
         """Bounds of the study's own criterion."""
-        return self.criteria[self.results.criterion]
+        return self.results.run.criteria[self.results.criterion]
 
     def of(self, variant: str, kind: str | None = None) -> Sequence[StudyEpisodeRecord]:
         """Records of a variant, of one garment kind or of all."""

@@ -5,7 +5,7 @@ from PIL import Image
 from polyfold.evaluation._criteria import criteria, succeeded
 from polyfold.logs import RunRecord, StudyEpisodeRecord
 from polyfold.logs._fingerprint import Fingerprint
-from polyfold.logs._records import MetricRecord, ThresholdRecord
+from polyfold.logs._records import MetricRecord
 
 TASKS = {
     "square-corner-top_left": ("square", "S-Corner"),
@@ -25,10 +25,7 @@ METRICS = {
     "miou": MetricRecord(label="mIoU", unit="", digits=3, higher_is_better=True),
     "moved-part": MetricRecord(label="moved part", unit="mm", digits=1, higher_is_better=False),
 }
-CRITERIA = {
-    name: tuple(ThresholdRecord(**vars(bound)) for bound in bounds)
-    for name, bounds in criteria(["lenient", "strict"]).items()
-}
+CRITERIA = criteria(["lenient", "strict"])
 
 
 def run_record(study):
