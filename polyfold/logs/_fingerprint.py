@@ -22,9 +22,9 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment
+from polyfold.logs._components import components_in_use
 from polyfold.plugins import hookspecs
-from polyfold.plugins._inspection import files_read, parameters, prompts_read
-from polyfold.plugins._traits import UsesComponents
+from polyfold.plugins._inspection import files_read, prompts_read
 from polyfold.prompts import load_prompt
 
 CORE = ("geometry", "polygon", "garments", "types", "tasks", "plugins", "rollout", "evaluation", "studies")
@@ -141,21 +141,13 @@ def _once_each(specs: Iterable[tuple[str, ComponentSpec]]) -> list[tuple[str, Co
 
 def _specs(experiment: Experiment) -> Iterator[tuple[str, ComponentSpec]]:
     """Every component in use, also one that another of its kind names as a parameter, as a fault injector does."""
-    for field in _fields_in_use(experiment):
-        kind, spec = hookspecs.plural(field), getattr(experiment, field)
-        yield kind, spec
+    for field, spec in components_in_use(experiment).items():
+        kind = hookspecs.plural(field)
+        yield kind, getattr(experiment, field)
         known = plugins.names(kind)
-        for value in parameters(kind, spec).values():
+        for value in spec.params.values():
             if isinstance(value, str) and value.partition(":")[0] in known:
                 yield kind, ComponentSpec(name=value)
-
-
-def _fields_in_use(experiment: Experiment) -> dict[str, None]:
-    """The agent with what it is made of, its language model if it has one, and what shows and judges its episode."""
-    agent = plugins.component_class("agents", experiment.agent.name.partition(":")[0])
-    asks = ("llm",) if "instruction" in agent.requires else ()
-    uses = agent.uses if isinstance(agent, UsesComponents) else ()
-    return dict.fromkeys(("agent", "simulator", "segmenter", *uses, *asks))
 
 
 def _libraries() -> dict[str, str]:

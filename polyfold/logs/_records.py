@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from polyfold.config import Experiment
+from polyfold.config import ComponentSpec, Experiment
 from polyfold.logs._accounts import Account, accounts
 from polyfold.logs._fingerprint import Fingerprint
 from polyfold.logs._host import HostRecord
@@ -313,6 +313,7 @@ class RunRecord(LogRecord):
 
     Attributes:
         asked: what was asked for, defaults included, as plain data.
+        components: by variant and field of its experiment, the components in use, their defaults included.
         started: when, in UTC.
         fingerprint: code, prompts and weights that it began with; see ``changes``.
         host: where it began.
@@ -323,6 +324,7 @@ class RunRecord(LogRecord):
 
     schema_version: Literal[2] = SCHEMA_VERSION
     asked: dict[str, Any]
+    components: dict[str, dict[str, ComponentSpec]] = Field(default_factory=dict)
     started: datetime | None
     fingerprint: Fingerprint | None
     host: HostRecord | None

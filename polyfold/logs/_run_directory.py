@@ -14,6 +14,7 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from polyfold.config import ComponentSpec
 from polyfold.errors import ConfigError, validation_problem
 from polyfold.logs import _schema_1
 from polyfold.logs._files import write_atomically
@@ -46,6 +47,7 @@ class RunDirectory(Generic[Record]):
         fingerprint: what results depend on besides; see :meth:`guard`.
         metrics: how each metric is shown.
         criteria: bounds of each success criterion, the run's own first.
+        components: by variant and field of its experiment, the components in use, their defaults included.
 
     Raises:
         ConfigError: if the directory belongs to another configuration or another schema version.
@@ -59,6 +61,7 @@ class RunDirectory(Generic[Record]):
         fingerprint: Fingerprint | None = None,
         metrics: Mapping[str, MetricRecord] | None = None,
         criteria: Mapping[str, tuple[Threshold, ...]] | None = None,
+        components: Mapping[str, dict[str, ComponentSpec]] | None = None,
     ) -> None:
         self.path = Path(path)
         self.path.mkdir(parents=True, exist_ok=True)
@@ -70,6 +73,7 @@ class RunDirectory(Generic[Record]):
         else:
             self.run = RunRecord(
                 asked=plain,
+                components=dict(components or {}),
                 started=datetime.now(UTC),
                 fingerprint=fingerprint,
                 host=this_host(),

@@ -20,9 +20,9 @@ def parameter_names(kind: str, spec: ComponentSpec) -> list[str]:
 
 
 def parameters(kind: str, spec: ComponentSpec) -> Mapping[str, Any]:
-    """Its parameters with their values, defaults included. Raises ConfigError for an impossible value."""
+    """Its parameters with their values as plain data, defaults included. Raises ConfigError for an impossible value."""
     config = HOST.configured(kind, spec.name, spec.params)[1]
-    return {} if config is None else {name: getattr(config, name) for name in type(config).model_fields}
+    return {} if config is None else config.model_dump(mode="json")
 
 
 def files_read(kind: str, spec: ComponentSpec) -> Sequence[Path]:

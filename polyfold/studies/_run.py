@@ -16,6 +16,7 @@ from polyfold import plugins
 from polyfold.errors import ConfigError
 from polyfold.evaluation._criteria import criteria
 from polyfold.logs import RunDirectory, StudyEpisodeRecord
+from polyfold.logs._components import components_in_use
 from polyfold.logs._files import picture_path, write_atomically
 from polyfold.logs._fingerprint import Fingerprint, fingerprint
 from polyfold.logs._records import MetricRecord
@@ -71,6 +72,7 @@ def evaluate(
         now,
         metric_records(study),
         criteria(study.criteria),
+        {variant: components_in_use(experiment_of(study, variant)) for variant in study.variants},
     )
     done = {key: record for key, record in run.records().items() if not record.unanswered}
     missing = [cell for cell in wanted if cell.key not in done]

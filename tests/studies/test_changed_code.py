@@ -176,3 +176,13 @@ def test_references_are_made_anew_after_a_change_of_what_the_oracle_uses(my_plug
     monkeypatch.setattr("polyfold.logs._fingerprint._digest_of_folder", lambda folder: folder.name)
     reference_for(task, cloth, 2000, simulator)
     assert len(list((tmp_path / "cache" / "references").iterdir())) == 2
+
+
+def test_a_run_says_what_was_asked_with_all_defaults(my_plugin, study, tmp_path):
+    run = polyfold.run(study, tmp_path / "run", progress=False).run
+    assert run.asked["study"]["reference"] == "oracle"
+    used = run.components["polyfold"]
+    assert used["policy"].name == "shifted"
+    assert "gamma" in used["policy"].params
+    assert used["simulator"].params["thickness"] > 0
+    assert used["planner"].params["subgoals_prompt"] == "mine"
