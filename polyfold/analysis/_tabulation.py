@@ -71,20 +71,27 @@ def _chosen(results: Results, columns: Sequence[str] | None) -> list[Column]:
 
 def _note(results: Results, noise: Results | None) -> str:
     note = f"{results.study.name}: mean [95 % bootstrap interval]; reference: {REFERENCES[results.study.reference]}."
+    note += _remarks(results)
+    return note if noise is None else f"{note} {noise_floor(noise)}"
+
+
+def _remarks(results: Results) -> str:
+    """What a reader of any table must know of how its episodes came about."""
+    note = ""
     if any(record.steps_wanted is None for record in results.records):
         note += " Goals: the nearest task that each accepts; success includes those that are done by their own bounds."
     if any(record.privileged for record in results.records):
         note += " * privileged: sees more than the camera."
     for change in results.run.changes:
         note += f" Went on after {change.episodes} episodes with a change: {'; '.join(change.differences)}."
-    return note if noise is None else f"{note} {noise_floor(noise)}"
+    return note
 
 
 def noise_floor(noise: Results) -> str:
     """How far results differ that differ in nothing that matters, as a sentence.
 
     Args:
-        noise: a study of the oracle with its particles, contacts and constraints in other orders.
+        noise: a study of the oracle with its particles and contacts in other orders.
     """
     columns = ", ".join(f"{column.heading} {_mean(column, noise.records)}" for column in columns_of(noise.run))
     count = len(noise.records)
@@ -101,6 +108,7 @@ def _by_step(results: Results) -> Table:
             cells = [Figure(estimate(values), note=f"(n={len(values)})") if values else "–" for values in after]
             rows.append([_marked(variant, records), kind, *cells])
     note = f"{results.study.name}: mean particle error [mm] after each fold of the episode's own."
+    note += _remarks(results)
     return Table(["variant", "kind", *(f"step {step + 1}" for step in range(most))], rows, note)
 
 
@@ -155,6 +163,7 @@ def compare(results: Results, variant: str, baseline: str, columns: Sequence[str
             pair = [ours[key] for key in keys], [theirs[key] for key in keys]
             rows.append([kind, str(len(keys)), *(_difference(column, *pair) for column in chosen)])
     note = f"{variant} − {baseline}, the same episodes; mean [95 % bootstrap interval]."
+    note += _remarks(results)
     return Table(["kind", "n", *(column.heading for column in chosen)], rows, note)
 
 

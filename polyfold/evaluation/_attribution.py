@@ -76,6 +76,7 @@ def _of_failure(stage: str, decomposed: bool) -> str:
         "unanswered": "infrastructure",
         "refused": "subgoal",
         "grounding": "grounding",
+        "policy": "policy",
         "planning": "fold line" if decomposed else "subgoal",
     }
     return causes.get(stage, "execution")

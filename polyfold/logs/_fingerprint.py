@@ -27,8 +27,23 @@ from polyfold.plugins import hookspecs
 from polyfold.plugins._inspection import files_read, prompts_read
 from polyfold.prompts import load_prompt
 
-CORE = ("geometry", "polygon", "garments", "types", "tasks", "plugins", "rollout", "evaluation", "studies")
-"""Packages of the core that decide how an episode comes out; pictures, tables and the command line do not."""
+CORE = (
+    "config.py",
+    "prompts.py",
+    "geometry",
+    "polygon",
+    "garments",
+    "types",
+    "tasks",
+    "plugins",
+    "rollout",
+    "evaluation",
+    "studies",
+)
+"""What of the core decides how an episode comes out; pictures, tables and the command line do not."""
+
+UNREADABLE = "unreadable"
+"""Stands for the digest of what can't be read: nobody knows whether it changed."""
 
 NUMERICS = ("numpy", "scipy", "numba", "opencv-python-headless", "shapely", "torch")
 """Distributions whose arithmetic results depend on."""
@@ -53,7 +68,7 @@ class Fingerprint(BaseModel):
         distributions: versions by name: Python, PolyFold, those of the plugins in use, and of numerical libraries.
         sources: SHA-256 by package: of the core's that decide results, and of every plugin in use.
         prompts: SHA-256 by ``role@version``, of those in use.
-        files: SHA-256 by folder and name of what components read besides their source, such as weights.
+        files: SHA-256 by package and name of what components read besides their source, such as weights.
         git: commit and whether it had local changes, by package that is used from a checkout.
     """
 
@@ -66,7 +81,10 @@ class Fingerprint(BaseModel):
     git: dict[str, GitState] = Field(default_factory=dict)
 
     def differences(self, other: Fingerprint) -> tuple[str, ...]:
-        """What is otherwise in ``other``, one line each; empty if results can be mixed."""
+        """What is otherwise in ``other``, one line each; what could not be read counts as otherwise.
+
+        A commit alone is a difference too, although :meth:`digest` is the same: it may change what is not looked at.
+        """
         lines: list[str] = []
         for what, mine, theirs in (
             ("version of", self.distributions, other.distributions),
@@ -77,7 +95,7 @@ class Fingerprint(BaseModel):
         ):
             for name in sorted({*mine, *theirs}):
                 old, new = mine.get(name, "absent"), theirs.get(name, "absent")
-                if old != new:
+                if old != new or new == UNREADABLE:
                     lines.append(f"{what} {name}: {_short(old)} then, {_short(new)} now")
         return tuple(lines)
 
@@ -113,7 +131,7 @@ def fingerprint(
     specs += [(kind, ComponentSpec(name=name)) for kind, name in also]
     core = Path(__file__).parents[1]
     distributions, prompts, files = _libraries(), {}, {}
-    sources = {f"polyfold.{name}": _digest_of_folder(core / name) for name in CORE}
+    sources = {f"polyfold.{name.removesuffix('.py')}": _digest_of(core / name) for name in CORE}
     folders = {"polyfold": core}
     for kind, spec in _once_each(specs):
         component = plugins.find(kind, spec.name.partition(":")[0])
@@ -130,7 +148,9 @@ def fingerprint(
             prompt = load_prompt(role, prompt_version)
             prompts[prompt.name] = prompt.sha256
         for path in files_read(kind, spec):
-            files[f"{path.parent.name}/{path.name}"] = _digest_of_file(path)
+            name = f"{source.name}: {path.name}"
+            # Two files of one name, as variants may read, count together.
+            files[name] = _joined(files.get(name), _digest_of_file(path))
     git = _git_states(folders) if commits else {}
     return Fingerprint(distributions=distributions, sources=sources, prompts=prompts, files=files, git=git)
 
@@ -185,7 +205,7 @@ def _source_of(target: type | str) -> _Source:
     if spec is not None and spec.origin:
         return _Source(package, _digest_of_file(Path(spec.origin)), None)
     if isinstance(target, str):
-        return _Source(package, "unreadable", None)
+        return _Source(package, UNREADABLE, None)
     return _Source(f"{module}.{target.__qualname__}", _digest_of_class(target), None)
 
 
@@ -194,7 +214,17 @@ def _digest_of_class(target: type) -> str:
     try:
         return hashlib.sha256(inspect.getsource(target).encode()).hexdigest()
     except (OSError, TypeError):
-        return "unreadable"
+        return UNREADABLE
+
+
+def _joined(known: str | None, digest: str) -> str:
+    if known in (None, digest):
+        return digest
+    return hashlib.sha256(f"{known} {digest}".encode()).hexdigest()
+
+
+def _digest_of(path: Path) -> str:
+    return _digest_of_folder(path) if path.is_dir() else _digest_of_file(path)
 
 
 def _digest_of_folder(folder: Path) -> str:
@@ -211,7 +241,7 @@ def _digest_of_file(path: Path) -> str:
     try:
         seen = path.stat()
     except OSError:
-        return "unreadable"
+        return UNREADABLE
     return _digest(path, seen.st_mtime_ns, seen.st_size)
 
 

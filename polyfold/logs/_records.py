@@ -27,7 +27,7 @@ Pixel = tuple[float, float]
 
 
 class LogRecord(BaseModel):
-    """Base of the log's records: frozen, and strict about their fields."""
+    """Base of the log's records: frozen; unknown fields are refused."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -49,7 +49,7 @@ class StepRecord(LogRecord):
         seconds: time per stage [s].
         notes: what grounding had to say about the picture.
         retry: whether it repeats the fold before, which was seen to have failed.
-        values_picks: whether the policy said how good it takes every place to pick for.
+        values_picks: whether the policy rated every place to pick.
     """
 
     subgoal: str | None
@@ -173,7 +173,7 @@ class EpisodeRecord(LogRecord):
 
 
 class KeyedRecord(LogRecord):
-    """What a run directory holds one of a line.
+    """A record that is stored one per line in a run directory.
 
     Attributes:
         key: unique within the run.
@@ -202,7 +202,7 @@ class BoundsRecord(LogRecord):
 
     holds: bool
     failing: tuple[str, ...]
-    measured: dict[str, float | bool]
+    measured: dict[str, bool | int | float]
 
 
 class StudyEpisodeRecord(KeyedRecord, EpisodeRecord):
@@ -222,7 +222,7 @@ class StudyEpisodeRecord(KeyedRecord, EpisodeRecord):
         success: by criterion.
         cause: the first cause of a failure by the study's first criterion; None for successes.
         reference_idle: whether the reference moved nothing, so that doing nothing is right.
-        peak_memory_mb: of the process that ran it [MB].
+        peak_memory_mb: largest memory, up to then, of the process that ran it [MiB].
         picture: path of its picture within the run directory.
     """
 
@@ -299,12 +299,14 @@ class ChangeRecord(LogRecord):
         when: in UTC.
         differences: what had changed, in words.
         fingerprint: what it went on with.
+        components: as in :class:`RunRecord`, then.
         episodes: how many were finished before.
     """
 
     when: datetime
     differences: tuple[str, ...]
     fingerprint: Fingerprint
+    components: dict[str, dict[str, ComponentSpec]] = Field(default_factory=dict)
     episodes: int
 
 
@@ -313,7 +315,7 @@ class RunRecord(LogRecord):
 
     Attributes:
         asked: what was asked for, defaults included, as plain data.
-        components: by variant and field of its experiment, the components in use, their defaults included.
+        components: by variant and field of its experiment, the components in use at first, their defaults included.
         started: when, in UTC.
         fingerprint: code, prompts and weights that it began with; see ``changes``.
         host: where it began.

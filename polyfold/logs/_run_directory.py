@@ -68,19 +68,19 @@ class RunDirectory(Generic[Record]):
         self._record_type = record_type
         self._lines = JsonLines(self.path / EPISODES)
         plain: dict[str, Any] = json.loads(json.dumps(asked))
+        self._now = RunRecord(
+            asked=plain,
+            components=dict(components or {}),
+            started=datetime.now(UTC),
+            fingerprint=fingerprint,
+            host=this_host(),
+            metrics=dict(metrics or {}),
+            criteria=dict(criteria or {}),
+        )
         if (self.path / DESCRIPTION).exists():
             self.run = self._claimed(plain)
         else:
-            self.run = RunRecord(
-                asked=plain,
-                components=dict(components or {}),
-                started=datetime.now(UTC),
-                fingerprint=fingerprint,
-                host=this_host(),
-                metrics=dict(metrics or {}),
-                criteria=dict(criteria or {}),
-            )
-            self._describe()
+            self._describe(self._now)
         self._lines.repair()
 
     def _claimed(self, asked: dict[str, Any]) -> RunRecord:
@@ -99,38 +99,50 @@ class RunDirectory(Generic[Record]):
             )
         return run
 
-    def _describe(self) -> None:
-        write_atomically(self.path / DESCRIPTION, self.run.model_dump_json(indent=2) + "\n")
+    def _describe(self, run: RunRecord) -> None:
+        self.run = run
+        write_atomically(self.path / DESCRIPTION, run.model_dump_json(indent=2) + "\n")
 
-    def guard(self, fingerprint: Fingerprint, accept_change: bool = False) -> None:
-        """Make sure that what is added now was made by what made the rest.
+    def guard(self, accept_change: bool = False) -> None:
+        """Make sure that what is added now is made by what made the rest, as fingerprints tell.
 
         Args:
-            fingerprint: what new results depend on.
-            accept_change: go on although it differs from the run's; that is recorded.
+            accept_change: go on although the fingerprint differs from the run's; that is recorded.
 
         Raises:
             ConfigError: if it differs, with the difference.
         """
         finished = len(self.records())
+        if not finished:
+            self._describe(self._now)
+            return
+        now = self._now.fingerprint or Fingerprint()
         before = self.run.changes[-1].fingerprint if self.run.changes else self.run.fingerprint
-        differences = before.differences(fingerprint) if before is not None else ("it was not recorded",)
+        differences = (before or Fingerprint()).differences(now)
         if not differences:
             return
-        if not finished:
-            self.run = self.run.model_copy(update={"fingerprint": fingerprint, "changes": ()})
-        elif accept_change:
-            change = ChangeRecord(
-                when=datetime.now(UTC), differences=differences, fingerprint=fingerprint, episodes=finished
-            )
-            self.run = self.run.model_copy(update={"changes": (*self.run.changes, change)})
-        else:
+        if not accept_change:
             raise ConfigError(
                 f"{self.path} holds {finished} episodes that were made by something else ({'; '.join(differences)}); "
                 "use another directory, or go on knowingly with --accept-change (accept_change=True), "
                 "which the run then records"
             )
-        self._describe()
+        change = ChangeRecord(
+            when=datetime.now(UTC),
+            differences=differences,
+            fingerprint=now,
+            components=self._now.components,
+            episodes=finished,
+        )
+        self._describe(
+            self.run.model_copy(
+                update={
+                    "changes": (*self.run.changes, change),
+                    "metrics": {**self.run.metrics, **self._now.metrics},
+                    "criteria": self._now.criteria,
+                }
+            )
+        )
 
     def append(self, record: Record) -> None:
         """Add a finished episode; it is on disk when this returns."""

@@ -38,7 +38,6 @@ def fold_record(episode: Episode, started: datetime | None = None, finished: dat
     return FoldRecord(
         **episode_fields(episode, started, finished),
         task=episode.task,
-        agent_seed=episode.seed,
         fidelity=_fidelity(episode.fidelity),
         experiment=episode.experiment,
         fingerprint=fingerprint([episode.experiment], also=[("garments", episode.garment.kind)]),
@@ -66,6 +65,7 @@ def episode_fields(
         "instruction": episode.instruction,
         "garment": _garment(episode.garment),
         "pose_seed": episode.seed,
+        "agent_seed": episode.agent_seed,
         "agent": episode.experiment.agent.name,
         "privileged": episode.privileged,
         "subgoals": tuple(subgoal.text for subgoal in episode.subgoals),

@@ -1,7 +1,7 @@
 """The host of plugins: it finds them, keeps the catalog of components, makes them, and tells observers what happens.
 
-Discovery is lazy and happens once per host. Every entry point is loaded on its own: a broken plugin is recorded with
-its distribution, version and traceback, warned of once, and never takes the host down.
+Discovery is lazy, and happens again after a registration by hand. Every entry point is loaded on its own: a broken
+plugin is recorded with its distribution, version and traceback, warned of once, and never takes the host down.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ from contextlib import closing
 from polyfold import plugins
 from polyfold.config import Experiment
 from polyfold.errors import (
+    ActionError,
     GroundingError,
     LLMAccessError,
     LLMError,
@@ -32,6 +33,7 @@ STAGES: Sequence[tuple[type[PolyfoldError], str]] = (
     (PlanError, "planning"),
     (GroundingError, "grounding"),
     (LLMError, "unanswered"),
+    (ActionError, "policy"),
     (SimulationError, "execution"),
 )
 """Errors that end an episode, and the stage of its failure; the first that fits counts."""
@@ -93,8 +95,9 @@ def run_episode(
     start = Start(experiment, garment, instruction, task, observation, simulator.state(), transcript, simulator)
     rollout = _Rollout(start, agent, role)
     rollout.seconds["reset"] = time.perf_counter() - clock
-    error = rollout.run(seed, seed if agent_seed is None else agent_seed)
-    episode = rollout.episode(seed, error)
+    agent_seed = seed if agent_seed is None else agent_seed
+    error = rollout.run(seed, agent_seed)
+    episode = rollout.episode(seed, agent_seed, error)
     episode = episode if judge is None else judge(episode)
     plugins.notify("on_episode_end", episode=episode, role=role)
     return episode
@@ -146,13 +149,14 @@ class _Rollout:
         plugins.notify("on_step", step=step, role=self._role)
         return True
 
-    def episode(self, seed: int, error: PolyfoldError | None) -> Episode:
+    def episode(self, seed: int, agent_seed: int, error: PolyfoldError | None) -> Episode:
         """What happened."""
         start = self._start
         return Episode(
             instruction=start.instruction,
             garment=start.garment,
             seed=seed,
+            agent_seed=agent_seed,
             experiment=start.experiment,
             privileged=bool(PRIVILEGED & self._agent.requires),
             subgoals=self._subgoals,

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold import plugins
-from polyfold.errors import SimulationError
+from polyfold.errors import ActionError, GroundingError, PlanError, SimulationError
 from polyfold.evaluation import suite
 from polyfold.evaluation._attribution import attribute, attribute_open
 from polyfold.evaluation._criteria import criteria
@@ -69,9 +69,9 @@ def evaluate_with_picture(study: Study, cell: Cell, pictures: str, render: Rende
     episode = _run(study, cell, entry, accepted)
     try:
         references = _references(study, cell, accepted, episode)
-    except SimulationError as error:
+    except (ActionError, GroundingError, PlanError, SimulationError) as error:
         failure = Failure("infrastructure", f"the oracle failed: {error}")
-        references, episode = [], replace(episode, failure=failure)
+        references, episode = [], replace(episode, failure=episode.failure or failure)
     end = Outcome(episode.initial_state, episode.final_state, final_mask(episode))
     metrics = {name: plugins.create("metrics", name, study.metrics.get(name)) for name in plugins.names("metrics")}
     comparison = compare_end(end, references, metrics, criteria(study.criteria))
@@ -84,7 +84,7 @@ def evaluate_with_picture(study: Study, cell: Cell, pictures: str, render: Rende
 
 def _is_pictured(study: Study, cell: Cell, record: StudyEpisodeRecord, pictures: str) -> bool:
     first = cell.garment_seed == study.first_seed and cell.wording == 0
-    return pictures == "all" or (pictures == "failed" and (first or not record.success[study.criteria[0]]))
+    return pictures == "all" or (pictures == "failed" and (first or not record.succeeded))
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,13 +132,20 @@ def _run(study: Study, cell: Cell, entry: Task | OpenTask, accepted: Sequence[Ta
         return run_episode(
             experiment, garment, instruction, cell.garment_seed, agent=agent, task=task, agent_seed=cell.agent_seed
         )
-    idle = run_episode(experiment, garment, instruction, cell.garment_seed, agent=_Idle())
     failure = Failure(
         "infrastructure",
         f"the agent {experiment.agent.name!r} needs guidance, which is made from a task, and {entry.id} accepts none; "
         "give it goals with 'accept' only",
     )
-    return replace(idle, failure=failure, privileged=bool(agent.requires & PRIVILEGED))
+    return run_episode(
+        experiment,
+        garment,
+        instruction,
+        cell.garment_seed,
+        agent=_Idle(),
+        agent_seed=cell.agent_seed,
+        judge=lambda idle: replace(idle, failure=failure, privileged=bool(agent.requires & PRIVILEGED)),
+    )
 
 
 def _references(study: Study, cell: Cell, accepted: Sequence[Task], episode: Episode) -> list[Reference]:
@@ -157,7 +164,6 @@ def _record(study: Study, cell: Cell, judged: _Judged, started: datetime) -> Stu
     }
     return StudyEpisodeRecord(
         **episode_fields(episode, started, datetime.now(UTC), keep_messages=False),
-        agent_seed=cell.agent_seed,
         task=cell.task,
         key=cell.key,
         variant=cell.variant,

@@ -40,7 +40,7 @@ def evaluate(
     render: Render | None = None,
     accept_change: bool = False,
 ) -> list[StudyEpisodeRecord]:
-    """Run what a directory lacks of a study and return all its records, in the study's order.
+    """Run the study's episodes that are not in a directory yet; returns the records of all, in the study's order.
 
     Args:
         study: what to run.
@@ -52,7 +52,8 @@ def evaluate(
         pictures: which episodes get a small picture beside their record: ``none``, ``failed`` (and the first episode
             of each task) or ``all``.
         render: draws an episode as the bytes of a WebP file; without it there are no pictures.
-        accept_change: go on with a run although code, prompts or weights have changed since; the run records it.
+        accept_change: go on with a run although code, prompts, weights or the commit have changed since; the run
+            records it.
 
     Raises:
         ConfigError: if the directory belongs to another study, what results depend on has changed, or a component
@@ -64,12 +65,11 @@ def evaluate(
     if pictures not in PICTURES:
         raise ConfigError(f"there are no pictures {pictures!r}; choose one of {', '.join(PICTURES)}")
     wanted = list(cells(study))
-    now = study_fingerprint(study)
     run = RunDirectory(
         out,
         {"study": study.model_dump(mode="json")},
         StudyEpisodeRecord,
-        now,
+        study_fingerprint(study, {cell.garment for cell in wanted}),
         metric_records(study),
         criteria(study.criteria),
         {variant: components_in_use(experiment_of(study, variant)) for variant in study.variants},
@@ -77,7 +77,7 @@ def evaluate(
     done = {key: record for key, record in run.records().items() if not record.unanswered}
     missing = [cell for cell in wanted if cell.key not in done]
     if missing:
-        run.guard(now, accept_change)
+        run.guard(accept_change)
         _check_language_models(study, missing)
         if workers > 1 or engine == "dask":
             _check_portable()
@@ -87,7 +87,7 @@ def evaluate(
     results = on_dask(job, missing, workers, address) if dask else in_processes(job, missing, workers)
     try:
         with closing(results):
-            shown = _with_progress(results, study, len(wanted), list(done.values()), progress and bool(missing))
+            shown = _with_progress(results, len(wanted), list(done.values()), progress and bool(missing))
             for cell, (record, picture) in shown:
                 run.append(_with_picture(run.path, cell, record, picture))
     finally:
@@ -96,11 +96,11 @@ def evaluate(
     return [finished[cell.key] for cell in wanted]
 
 
-def study_fingerprint(study: Study) -> Fingerprint:
-    """What the results of a study depend on besides the study itself."""
+def study_fingerprint(study: Study, garment_kinds: Iterable[str]) -> Fingerprint:
+    """What the results of a study on some kinds of garment depend on besides the study itself."""
     also = [("metrics", name) for name in plugins.names("metrics")]
     also += [("criteria", name) for name in study.criteria]
-    also += [("garments", kind) for kind in dict.fromkeys(cell.garment for cell in cells(study))]
+    also += [("garments", kind) for kind in sorted(garment_kinds)]
     also += [("tasks", study.suite), ("agents", "oracle")]
     return fingerprint([experiment_of(study, variant) for variant in study.variants], also)
 
@@ -135,16 +135,15 @@ def _with_picture(folder: Path, cell: Cell, record: StudyEpisodeRecord, picture:
 
 
 def _with_progress(
-    results: Iterable[tuple[Cell, Scored]], study: Study, total: int, done: Sequence[StudyEpisodeRecord], shown: bool
+    results: Iterable[tuple[Cell, Scored]], total: int, done: Sequence[StudyEpisodeRecord], shown: bool
 ) -> Iterator[tuple[Cell, Scored]]:
     from tqdm import tqdm
 
-    criterion = study.criteria[0]
-    successes = sum(record.success[criterion] for record in done)
+    successes = sum(record.succeeded for record in done)
     with tqdm(total=total, initial=len(done), unit="episode", disable=not shown) as bar:
         for finished, (cell, (record, picture)) in enumerate(results, len(done) + 1):
             yield cell, (record, picture)
-            successes += record.success[criterion]
+            successes += record.succeeded
             bar.set_postfix_str(f"success {successes / finished:.0%}", refresh=False)
             bar.update()
 
@@ -153,8 +152,7 @@ def _check_language_models(study: Study, missing: Sequence[Cell]) -> None:
     """Construct each variant's once, so that no run ends at its second variant for want of a key."""
     for variant in dict.fromkeys(cell.variant for cell in missing):
         experiment = experiment_of(study, variant)
-        agent = plugins.component_class("agents", experiment.agent.name.partition(":")[0])
-        if "instruction" in agent.requires:
+        if "llm" in components_in_use(experiment):
             plugins.create_chosen(experiment, "llm")
 
 

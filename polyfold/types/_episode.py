@@ -71,6 +71,7 @@ class Failure:
 
     Attributes:
         stage: ``refused``, ``grounding``, ``planning``, ``unanswered`` (nothing came from the language model),
+            ``policy`` (picks or places outside the image),
             ``execution``, or in studies ``infrastructure`` (there was nothing to compare with, or no guidance).
         reason: the error's message.
     """
@@ -84,6 +85,8 @@ class Episode:
     """Everything that happened, with the privileged states that scores are computed from.
 
     Attributes:
+        seed: of how the garment lay.
+        agent_seed: of the agent's random choices.
         privileged: whether the agent was told more than a camera sees.
         calls: every request to the language model, in order.
         seconds: time per stage, summed over the steps, ``reset`` and ``subgoals`` included [s].
@@ -94,6 +97,7 @@ class Episode:
     instruction: str
     garment: Garment
     seed: int
+    agent_seed: int
     experiment: Experiment
     privileged: bool
     subgoals: tuple[Subgoal, ...]

@@ -85,23 +85,23 @@ AFTER = Fingerprint(
 
 def test_what_other_code_made_is_not_added_to(tmp_path):
     run = RunDirectory(tmp_path, {}, Score, BEFORE)
-    run.guard(BEFORE)
+    run.guard()
     run.append(Score(key="one", score=1.0))
     again = RunDirectory(tmp_path, {}, Score, AFTER)
     with pytest.raises(ConfigError, match=r"version of my-plugin: 0\.1\.0 then, 0\.2\.0 now.*--accept-change"):
-        again.guard(AFTER)
-    again.guard(AFTER, accept_change=True)
+        again.guard()
+    again.guard(accept_change=True)
     (change,) = read_run(tmp_path).changes
     assert change.episodes == 1
     assert "source of my_plugin: aaaaaaaaaaaa then, cccccccccccc now" in change.differences
-    RunDirectory(tmp_path, {}, Score, AFTER).guard(AFTER)
+    RunDirectory(tmp_path, {}, Score, AFTER).guard()
     with pytest.raises(ConfigError, match="my-plugin"):
-        RunDirectory(tmp_path, {}, Score, BEFORE).guard(BEFORE)
+        RunDirectory(tmp_path, {}, Score, BEFORE).guard()
 
 
 def test_a_run_without_an_episode_takes_what_there_is_now(tmp_path):
     RunDirectory(tmp_path, {}, Score, BEFORE)
     run = RunDirectory(tmp_path, {}, Score, AFTER)
-    run.guard(AFTER)
+    run.guard()
     assert read_run(tmp_path).fingerprint == AFTER
     assert read_run(tmp_path).changes == ()

@@ -151,6 +151,21 @@ def test_cloth_that_is_out_of_sight_scores_nothing_and_the_study_goes_on(tmp_pat
     assert not any(record.succeeded for record in records)
 
 
+def test_a_policy_that_places_outside_the_image_fails_its_episode_and_no_study(tmp_path):
+    class Astray:
+        def act(self, fold_line, scene, rng):
+            return polyfold.Action([[200.0, 200.0]], [[-50.0, 200.0]])
+
+    polyfold.register("policies", "astray", Astray)
+    try:
+        study = polyfold.Study(**{**SMALL, "garments": 1}, base={"policy": "astray"})
+        records = evaluate(study, tmp_path, progress=False)
+    finally:
+        polyfold.plugins.unregister("policies", "astray")
+    assert {record.failure.stage for record in records} == {"policy"} == {record.cause for record in records}
+    assert all("inside" in record.failure.reason for record in records)
+
+
 def test_references_have_no_faults():
     task = suite("polyfold70").task("square-corner-top_left")
     cloth = polyfold.garment("square", seed=2000, edge_length=0.03)
