@@ -64,6 +64,8 @@ def evaluate(
         raise ConfigError(f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}")
     if pictures not in PICTURES:
         raise ConfigError(f"there are no pictures {pictures!r}; choose one of {', '.join(PICTURES)}")
+    if workers < 1:
+        raise ConfigError(f"there are no {workers} workers; give 1 or more")
     wanted = list(cells(study))
     run = RunDirectory(
         out,

@@ -166,6 +166,11 @@ def test_a_policy_that_places_outside_the_image_fails_its_episode_and_no_study(t
     assert all("inside" in record.failure.reason for record in records)
 
 
+def test_a_run_needs_a_worker(tmp_path):
+    with pytest.raises(ConfigError, match="give 1 or more"):
+        evaluate(polyfold.Study(**SMALL), tmp_path, workers=0)
+
+
 def test_references_have_no_faults():
     task = suite("polyfold70").task("square-corner-top_left")
     cloth = polyfold.garment("square", seed=2000, edge_length=0.03)
