@@ -91,7 +91,7 @@ class PenaltySet:
         return self._violation(values) / self._sigma
 
     def energy(self, vertices: ArrayLike) -> float:
-        """Γ = ½ Σ (violation / σ)²."""
+        """Γ = ½ Σ (violation / σ)² of vertices, shape (V, 2)."""
         return 0.5 * float(np.sum(self.residuals(vertices) ** 2))
 
     def residuals_and_jacobian(self, vertices: Floats) -> tuple[Floats, Floats]:

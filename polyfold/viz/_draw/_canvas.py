@@ -139,7 +139,7 @@ class Page:
 
     @classmethod
     def over(cls, rgb: Image) -> Page:
-        """A page that shows a picture, to write on."""
+        """A page that shows a picture, uint8, shape (H, W, 3), to write on."""
         page = cls(rgb.shape[1], rgb.shape[0])
         page.picture(rgb, 0, 0)
         return page
@@ -149,7 +149,7 @@ class Page:
         return np.asarray(self._image)
 
     def picture(self, rgb: Image, x: int, y: int, frame: Colour | None = None) -> None:
-        """Put a picture with its top-left corner at (x, y), inside a thin frame."""
+        """Put a picture, uint8, shape (H, W, 3), with its top-left corner at (x, y) [px], inside a thin frame."""
         from PIL import Image as Pillow
 
         height, width = rgb.shape[:2]
@@ -221,7 +221,7 @@ def resized(rgb: Image, width: int, height: int) -> Image:
 
 
 def fitted(rgb: Image, side: int, colour: Colour = PAPER) -> Image:
-    """A picture shrunk or enlarged to fit a square of ``side`` [px], centred on paper."""
+    """A picture fitted into a square of ``side`` [px], centred on paper, uint8, shape (side, side, 3)."""
     height, width = rgb.shape[:2]
     scale = side / max(height, width)
     small = resized(rgb, max(1, round(width * scale)), max(1, round(height * scale)))

@@ -47,6 +47,9 @@ def polygon_picture(model: FoldedModel, image_size: tuple[int, int] = (400, 400)
         model: the model [px].
         image_size: (width, height) of the image that the model lies in [px].
         zoom: size of the result relative to the image.
+
+    Returns:
+        uint8, shape (zoom * height, zoom * width, 3).
     """
     width, height = image_size
     canvas = Canvas(np.full((height, width, 3), TABLE, np.uint8), zoom)

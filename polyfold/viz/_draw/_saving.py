@@ -19,7 +19,7 @@ def png(rgb: NDArray[np.uint8]) -> bytes:
 
 
 def save(rgb: NDArray[np.uint8], path: str | Path) -> Path:
-    """Write a picture as PNG, making its folder if need be; returns the path."""
+    """Write a picture, uint8, shape (H, W, 3), as PNG, making its folder if need be; returns the path."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(png(rgb))

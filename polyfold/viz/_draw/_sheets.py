@@ -74,6 +74,9 @@ def score_sheet(
         columns: cases in a row; by default the page comes out a little wider than high.
         side: size of each picture [px].
 
+    Returns:
+        uint8, shape (H, W, 3).
+
     Raises:
         ConfigError: if there are no cases.
     """
