@@ -69,7 +69,7 @@ class Fingerprint(BaseModel):
         sources: SHA-256 by package: of the core's that decide results, and of every plugin in use.
         prompts: SHA-256 by ``role@version``, of those in use.
         files: SHA-256 by package and name of what components read besides their source, such as weights.
-        git: commit and whether it had local changes, by package that is used from a checkout.
+        git: commit and whether it had local changes, by the first package that is used from a checkout.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -88,10 +88,10 @@ class Fingerprint(BaseModel):
         lines: list[str] = []
         for what, mine, theirs in (
             ("version of", self.distributions, other.distributions),
-            ("commit of", _shown(self.git), _shown(other.git)),
             ("source of", self.sources, other.sources),
             ("prompt", self.prompts, other.prompts),
             ("file", self.files, other.files),
+            ("commit of", _shown(self.git), _shown(other.git)),
         ):
             for name in sorted({*mine, *theirs}):
                 old, new = mine.get(name, "absent"), theirs.get(name, "absent")
@@ -252,17 +252,16 @@ def _digest(path: Path, _modified: int, _size: int) -> str:
 
 
 def _git_states(folders: Mapping[str, Path]) -> dict[str, GitState]:
-    """The state of each package's checkout; none for installed packages, and none without git."""
+    """The state of each checkout, under the first package that is used from it; none for installed packages."""
     found: dict[str, GitState] = {}
-    states: dict[Path, GitState | None] = {}
+    seen: set[Path] = set()
     for name, folder in folders.items():
         checkout = next((parent for parent in folder.parents if (parent / ".git").exists()), None)
         # A package may be installed into an environment that lies inside of somebody's checkout.
-        if checkout is None or not _git(checkout, "ls-files", "--", str(folder)):
+        if checkout is None or checkout in seen or not _git(checkout, "ls-files", "--", str(folder)):
             continue
-        if checkout not in states:
-            states[checkout] = _git_state(checkout)
-        state = states[checkout]
+        seen.add(checkout)
+        state = _git_state(checkout)
         if state is not None:
             found[name] = state
     return found
