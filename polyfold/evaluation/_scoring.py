@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from polyfold.errors import PluginError
 from polyfold.evaluation._criteria import needed_scale, succeeded
 from polyfold.evaluation._references import Reference
 from polyfold.plugins.interfaces import Metric
@@ -40,13 +41,25 @@ def compare_end(
         references: what counts as right; may be empty.
         metrics: by name.
         criteria: bounds by name, the one that decides which reference is nearest first.
+
+    Raises:
+        PluginError: if a metric fails, naming it.
     """
     if not references:
         return Comparison(dict.fromkeys(metrics, math.nan), None, dict.fromkeys(criteria, False))
     scores = [
-        {name: metric.score(end, [reference.outcome]) for name, metric in metrics.items()} for reference in references
+        {name: _score(name, metric, end, reference) for name, metric in metrics.items()} for reference in references
     ]
     first = next(iter(criteria.values()))
     nearest = min(range(len(scores)), key=lambda index: needed_scale(scores[index], first))
     success = {name: any(succeeded(values, bounds) for values in scores) for name, bounds in criteria.items()}
     return Comparison(scores[nearest], references[nearest], success)
+
+
+def _score(name: str, metric: Metric, end: Outcome, reference: Reference) -> float:
+    try:
+        return metric.score(end, [reference.outcome])
+    except Exception as error:
+        raise PluginError(
+            f"the metric {name!r} failed ({type(error).__name__}: {error}); update or disable its plugin"
+        ) from error

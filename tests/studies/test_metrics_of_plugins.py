@@ -6,6 +6,7 @@ import pytest
 
 import polyfold
 from polyfold import plugins
+from polyfold.errors import PluginError
 from polyfold.studies._run import metric_records
 
 
@@ -35,3 +36,19 @@ def test_what_a_metric_leaves_out_has_a_default(metric, label, digits):
     finally:
         plugins.unregister("metrics", "mine")
     assert (shown.label, shown.digits, shown.unit, shown.summary) == (label, digits, "mm", "a test's metric")
+
+
+class Failing(Bare):
+    def score(self, result, references):
+        return 1 / 0
+
+
+def test_a_metric_that_fails_is_named(tmp_path, monkeypatch):
+    monkeypatch.setenv("POLYFOLD_CACHE", str(tmp_path / "cache"))
+    polyfold.register("metrics", "mine", Failing)
+    study = polyfold.Study(name="f", tasks=("square-corner-top_left",), first_seed=2000, edge_length=0.03)
+    try:
+        with pytest.raises(PluginError, match=r"the metric 'mine' failed \(ZeroDivisionError.*disable its plugin"):
+            polyfold.run(study, tmp_path / "run", progress=False)
+    finally:
+        plugins.unregister("metrics", "mine")
