@@ -21,7 +21,7 @@ KINDS = ("square", "rectangle", "tshirt", "pants")
 """The paper's kinds of garment, in its order; others follow."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Results:
     """The finished episodes of a study.
 
@@ -37,6 +37,10 @@ class Results:
     def study(self) -> Study:
         """The study that was run, defaults included."""
         return Study.model_validate(self.run.asked["study"])
+
+    def __repr__(self) -> str:
+        variants = ", ".join(self.study.variants)
+        return f"<Results of {self.study.name!r}: {len(self.records)} episodes of {variants}>"
 
     @property
     def criterion(self) -> str:

@@ -62,6 +62,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return FAILED
     except BrokenPipeError:
         return FAILED
+    except OSError as error:
+        print(f"polyfold: {error}; check the path and what may be read and written there", file=sys.stderr)
+        return FAILED
     except KeyboardInterrupt:
         print("polyfold: interrupted", file=sys.stderr)
         return INTERRUPTED

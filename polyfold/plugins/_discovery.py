@@ -86,10 +86,11 @@ def _register(manager: pluggy.PluginManager, plugin: Plugin, target: Any) -> Non
 
 
 def _load_failure(error: Exception, plugin: Plugin) -> str:
-    if isinstance(error, ModuleNotFoundError) and error.name:
-        return (
-            f"it could not be imported: the module {error.name!r} is missing; install it with: pip install {error.name}"
-        )
+    missing = error.name if isinstance(error, ModuleNotFoundError) else None
+    if missing and missing.partition(".")[0] == BUNDLED:
+        return f"it was written for another version of polyfold (there is no {missing} in this one); update it"
+    if missing:
+        return f"it could not be imported: the module {missing!r} is missing; install it with: pip install {missing}"
     return (
         f"it could not be imported ({type(error).__name__}: {error}); "
         f"update it, uninstall it or set POLYFOLD_DISABLE={plugin.name}"

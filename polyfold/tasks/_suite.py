@@ -208,6 +208,8 @@ def _read(source: str | Path) -> tuple[str, str]:
         return str(source), Path(source).read_text("utf-8")
     except (FileNotFoundError, ModuleNotFoundError) as error:
         raise ConfigError(f"there is no task suite {source}; check the path") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"the task suite {source} can't be read ({error}); save it as UTF-8 text") from error
 
 
 def _first_problem(error: ValidationError, content: Mapping[str, Any]) -> str:

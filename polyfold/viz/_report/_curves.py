@@ -47,7 +47,8 @@ def success_curve(records: Sequence[StudyEpisodeRecord], thresholds: Sequence[Th
 
 def scaled(threshold: Threshold, scale: float) -> Threshold:
     """A threshold loosened or tightened by a factor, as :func:`success_curve` does it."""
-    bound = 1.0 - scale * (1.0 - threshold.bound) if threshold.higher_is_better else scale * threshold.bound
+    best = threshold.best
+    bound = best - scale * (best - threshold.bound) if threshold.higher_is_better else scale * threshold.bound
     return replace(threshold, bound=bound)
 
 
