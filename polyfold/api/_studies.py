@@ -21,11 +21,33 @@ def run(
     pictures: str = "failed",
     accept_change: bool = False,
 ) -> Results:
-    """Run a study, or what its directory lacks of it; see :func:`polyfold.studies.evaluate`."""
+    """Run a study, or what its directory lacks of it.
+
+    A finished episode is on disk before the next is waited for: killing a run at any moment loses at most what was in
+    flight, and running it again does only what is missing.
+
+    Args:
+        study: what to run.
+        out: run directory; made if needed, resumed if it holds the same study.
+        workers: processes on this machine.
+        engine: ``local`` or ``dask``.
+        address: of the Dask scheduler; without one a cluster of ``workers`` is started on this machine.
+        progress: show a progress bar with rate, time left and running success.
+        pictures: which episodes get a small picture beside their record: ``none``, ``failed`` (and the first episode
+            of each task) or ``all``.
+        accept_change: go on with a run although code, prompts, weights or the commit have changed since; the run
+            records it.
+
+    Returns:
+        The results, in the study's order.
+
+    Raises:
+        ConfigError: if the directory belongs to another study, what results depend on has changed, or a component
+            can't reach the workers.
+        LLMAccessError: if a variant's language model lacks its key; before anything is folded.
+    """
     records = evaluate(study, out, workers, engine, address, progress, pictures, thumbnail, accept_change)
     return Results(read_run(out), records)
 
 
-def open(out: str | Path) -> Results:
-    """The results in a run directory, finished or not. Raises ConfigError if there is none."""
-    return open_results(out)
+open = open_results

@@ -15,7 +15,7 @@ from polyfold.config import ComponentSpec, Experiment
 from polyfold.evaluation._judging import final_mask
 from polyfold.garments import Garment
 from polyfold.geometry import Camera
-from polyfold.logs._fingerprint import fingerprint
+from polyfold.logs._dependencies import fingerprint
 from polyfold.logs._host import processor
 from polyfold.plugins.interfaces import HasReferenceConfig
 from polyfold.rollout import run_episode

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from polyfold.garments import Garment
-from polyfold.logs._fingerprint import fingerprint
+from polyfold.logs._dependencies import fingerprint
 from polyfold.logs._host import processor, this_host
 from polyfold.logs._records import (
     CallRecord,

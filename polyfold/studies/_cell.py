@@ -45,22 +45,16 @@ Scored = tuple[StudyEpisodeRecord, bytes | None]
 """A scored episode and its picture, if one was asked for; it travels back so that workers need not share a disk."""
 
 
-def evaluate_cell(study: Study, cell: Cell) -> StudyEpisodeRecord:
+def evaluate_cell(study: Study, cell: Cell, pictures: str = "none", render: Render | None = None) -> Scored:
     """Run one episode and score it.
 
     The pose depends on the garment's seed alone, so that all variants and wordings start from the same picture as the
     oracle. A goal without given folds (:class:`polyfold.tasks.OpenTask`) is compared with the nearest of the tasks that
     it accepts, and its record's ``done`` says which of its own bounds the end keeps.
-    """
-    return evaluate_with_picture(study, cell, "none", None)[0]
-
-
-def evaluate_with_picture(study: Study, cell: Cell, pictures: str, render: Render | None) -> Scored:
-    """As :func:`evaluate_cell`, with the episode's small picture if ``pictures`` asks for one.
 
     Args:
         study, cell: what to run.
-        pictures: one of :data:`PICTURES`.
+        pictures: one of :data:`PICTURES`: whether this episode gets one.
         render: draws it; None for no pictures.
     """
     started = datetime.now(UTC)

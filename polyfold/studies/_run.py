@@ -17,14 +17,16 @@ from polyfold.errors import ConfigError
 from polyfold.evaluation._criteria import criteria
 from polyfold.logs import RunDirectory, StudyEpisodeRecord
 from polyfold.logs._components import components_in_use
+from polyfold.logs._dependencies import fingerprint
 from polyfold.logs._files import picture_path, write_atomically
-from polyfold.logs._fingerprint import Fingerprint, fingerprint
+from polyfold.logs._fingerprint import Fingerprint
 from polyfold.logs._records import MetricRecord
 from polyfold.plugins.interfaces import LabelledMetric, Metric, RoundedMetric
-from polyfold.studies._cell import PICTURES, Render, Scored, evaluate_with_picture
+from polyfold.studies._cell import PICTURES, Render, Scored, evaluate_cell
 from polyfold.studies._cells import Cell, cells
 from polyfold.studies._executors import in_processes, on_dask
 from polyfold.studies._study import Study, experiment_of
+from polyfold.types import Threshold
 
 ENGINES = ("local", "dask")
 
@@ -42,23 +44,9 @@ def evaluate(
 ) -> list[StudyEpisodeRecord]:
     """Run the study's episodes that are not in a directory yet; returns the records of all, in the study's order.
 
-    Args:
-        study: what to run.
-        out: run directory; made if needed, resumed if it holds the same study.
-        workers: processes on this machine.
-        engine: ``local`` or ``dask``.
-        address: of the Dask scheduler; without one a cluster of ``workers`` is started on this machine.
-        progress: show a progress bar with rate, time left and running success.
-        pictures: which episodes get a small picture beside their record: ``none``, ``failed`` (and the first episode
-            of each task) or ``all``.
-        render: draws an episode as the bytes of a WebP file; without it there are no pictures.
-        accept_change: go on with a run although code, prompts, weights or the commit have changed since; the run
-            records it.
+    Args: as for :func:`polyfold.run`, and besides
 
-    Raises:
-        ConfigError: if the directory belongs to another study, what results depend on has changed, or a component
-            can't reach the workers.
-        LLMAccessError: if a variant's language model lacks its key; before anything is folded.
+        render: draws an episode as the bytes of a WebP file; without it there are no pictures.
     """
     if engine not in ENGINES:
         raise ConfigError(f"there is no engine {engine!r}; choose one of {', '.join(ENGINES)}")
@@ -67,13 +55,14 @@ def evaluate(
     if workers < 1:
         raise ConfigError(f"there are no {workers} workers; give 1 or more")
     wanted = list(cells(study))
+    bounds = criteria(study.criteria)
     run = RunDirectory(
         out,
         {"study": study.model_dump(mode="json")},
         StudyEpisodeRecord,
         study_fingerprint(study, {cell.garment for cell in wanted}),
-        metric_records(study),
-        criteria(study.criteria),
+        metric_records(bounds[study.criteria[0]]),
+        bounds,
         {variant: components_in_use(experiment_of(study, variant)) for variant in study.variants},
     )
     done = {key: record for key, record in run.records().items() if not record.unanswered}
@@ -84,7 +73,7 @@ def evaluate(
         if workers > 1 or engine == "dask":
             _check_portable()
     plugins.notify("on_study_start", study=study)
-    job = partial(evaluate_with_picture, study, pictures=pictures, render=render)
+    job = partial(evaluate_cell, study, pictures=pictures, render=render)
     dask = missing and engine == "dask"
     results = on_dask(job, missing, workers, address) if dask else in_processes(job, missing, workers)
     try:
@@ -107,10 +96,9 @@ def study_fingerprint(study: Study, garment_kinds: Iterable[str]) -> Fingerprint
     return fingerprint([experiment_of(study, variant) for variant in study.variants], also)
 
 
-def metric_records(study: Study) -> dict[str, MetricRecord]:
-    """How each installed metric is shown, by name; those that the study's own criterion bounds first."""
-    first = criteria(study.criteria[:1])[study.criteria[0]]
-    bounded = dict.fromkeys(threshold.metric for threshold in first)
+def metric_records(own: Sequence[Threshold]) -> dict[str, MetricRecord]:
+    """How each installed metric is shown, by name; those that a study's own criterion bounds first."""
+    bounded = dict.fromkeys(threshold.metric for threshold in own)
     names = [*bounded, *(name for name in plugins.names("metrics") if name not in bounded)]
     return {name: _metric_record(name) for name in names}
 

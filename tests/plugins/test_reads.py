@@ -4,7 +4,7 @@ import pytest
 
 from polyfold import Experiment
 from polyfold.errors import ConfigError
-from polyfold.logs._fingerprint import fingerprint
+from polyfold.logs._dependencies import fingerprint
 
 
 def test_the_weights_of_a_learned_policy_count():

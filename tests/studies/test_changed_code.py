@@ -173,7 +173,7 @@ def test_references_are_made_anew_after_a_change_of_what_the_oracle_uses(my_plug
     (kept,) = (tmp_path / "cache" / "references").iterdir()
     reference_for(task, cloth, 2000, simulator)
     assert list((tmp_path / "cache" / "references").iterdir()) == [kept]
-    monkeypatch.setattr("polyfold.logs._fingerprint._digest_of_folder", lambda folder: folder.name)
+    monkeypatch.setattr("polyfold.logs._sources.digest_of_folder", lambda folder: folder.name)
     reference_for(task, cloth, 2000, simulator)
     assert len(list((tmp_path / "cache" / "references").iterdir())) == 2
 

@@ -343,5 +343,5 @@ class TestStudy:
             edge_length=0.03,
             base={"agent": "oracle"},
         )
-        record = evaluate_cell(study, next(cells(study)))
+        record = evaluate_cell(study, next(cells(study)))[0]
         assert record.success == {"lenient": not mixed, "strict": not mixed}

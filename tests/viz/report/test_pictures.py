@@ -58,7 +58,7 @@ def test_failures_and_the_first_garment_are_pictured_unless_asked_otherwise(stud
 def test_apart_from_the_picture_the_record_is_that_of_the_episode(study, tmp_path):
     cell = next(iter(cells(study)))
     (found, *_) = rendered(study, tmp_path, progress=False)
-    plain = evaluate_cell(study, cell)
+    plain, _ = evaluate_cell(study, cell)
     assert untimed(found) == untimed(plain)
 
 
