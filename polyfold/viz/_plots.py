@@ -40,5 +40,5 @@ def bars(results: Results, column: str = "success %") -> Any:
     axes.set_xticks(range(len(kinds)), kinds)
     axes.set_ylabel(chosen.heading)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, fontsize=8)
+    figure.legend(loc="outside upper center", ncols=min(len(variants), 3), frameon=False, fontsize=8)
     return figure
