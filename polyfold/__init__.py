@@ -19,7 +19,7 @@ _HOMES = {
     "polyfold.api": ("fold", "garment", "ground", "open", "run"),
     "polyfold.config": ("Experiment",),
     "polyfold.errors": ("PolyfoldError", "RefusedError"),
-    "polyfold.garments": ("Garment",),
+    "polyfold.garments": ("Fabric", "Garment"),
     "polyfold.geometry": ("Camera", "FoldLine"),
     "polyfold.plugins": ("register",),
     "polyfold.plugins.hookspecs": ("hookimpl",),
@@ -36,6 +36,7 @@ __all__ = [
     "Decision",
     "Episode",
     "Experiment",
+    "Fabric",
     "FoldLine",
     "FoldedModel",
     "Garment",
@@ -68,7 +69,7 @@ if TYPE_CHECKING:
     from polyfold.api import fold, garment, ground, open, run
     from polyfold.config import Experiment
     from polyfold.errors import PolyfoldError, RefusedError
-    from polyfold.garments import Garment
+    from polyfold.garments import Fabric, Garment
     from polyfold.geometry import Camera, FoldLine
     from polyfold.plugins import register
     from polyfold.plugins.hookspecs import hookimpl

@@ -6,11 +6,14 @@ import tomllib
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from polyfold.errors import ConfigError, validation_problem
 
 __all__ = ["ComponentSpec", "Experiment", "load_experiment", "read_toml", "to_toml"]
+
+USUAL = "usual"
+"""Stands for the fabric that a kind of garment is usually made of; no component is called so."""
 
 
 class ComponentSpec(BaseModel):
@@ -38,6 +41,8 @@ class Experiment(BaseModel):
 
     agent: ComponentSpec = ComponentSpec(name="polyfold")
     simulator: ComponentSpec = ComponentSpec(name="xpbd")
+    fabric: ComponentSpec = ComponentSpec(name=USUAL)
+    """What the garment is made of; ``usual``, or a table of parameters without a name: what its kind usually is."""
     segmenter: ComponentSpec = ComponentSpec(name="colour")
     grounding: ComponentSpec = ComponentSpec(name="polygon")
     planner: ComponentSpec = ComponentSpec(name="hierarchical")
@@ -45,6 +50,11 @@ class Experiment(BaseModel):
     llm: ComponentSpec = ComponentSpec(name="rules")
     guidance: Literal["steps", "final"] = "steps"
     """What agents that need guidance get: accurate subgoals, or the final goal alone."""
+
+    @field_validator("fabric", mode="before")
+    @classmethod
+    def _usual_unless_named(cls, value: Any) -> Any:
+        return {"name": USUAL, **value} if isinstance(value, dict) and "name" not in value else value
 
     @classmethod
     def of(cls, **settings: Any) -> Experiment:

@@ -5,7 +5,7 @@ from polyfold.errors import ConfigError
 
 
 def test_toml_round_trip(tmp_path):
-    experiment = config.Experiment.of(policy="farthest", simulator={"name": "xpbd", "thickness": 0.006})
+    experiment = config.Experiment.of(policy="farthest", fabric={"name": "denim", "thickness": 0.0012})
     path = tmp_path / "experiment.toml"
     path.write_text(config.to_toml(experiment))
     assert config.load_experiment(path) == experiment
@@ -25,6 +25,14 @@ def test_wrong_files_say_what_is_wrong(tmp_path, text, says):
     path.write_text(text)
     with pytest.raises(ConfigError, match=says):
         config.load_experiment(path)
+
+
+def test_a_fabric_s_table_needs_no_name(tmp_path):
+    path = tmp_path / "experiment.toml"
+    path.write_text("[fabric]\nthickness = 0.0012\n")
+    assert config.load_experiment(path).fabric == config.ComponentSpec(name="usual", params={"thickness": 0.0012})
+    path.write_text('fabric = "denim"\n')
+    assert config.load_experiment(path).fabric.name == "denim"
 
 
 def test_missing_file():

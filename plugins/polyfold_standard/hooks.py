@@ -1,4 +1,4 @@
-"""Registers the garments, the colour segmenter, the agents and the standard tasks."""
+"""Registers the garments and fabrics, the colour segmenter, the agents and the standard tasks."""
 
 from polyfold.plugins.hookspecs import hookimpl
 
@@ -10,6 +10,16 @@ def register_garments(register):
     register("rectangle", "polyfold_standard.garments.rectangle:Rectangle", "rectangular cloth, one layer")
     register("tshirt", "polyfold_standard.garments.tshirt:TShirt", "t-shirt, two layers")
     register("pants", "polyfold_standard.garments.pants:Pants", "pants, two layers")
+
+
+@hookimpl
+def register_fabrics(register):
+    """Register the fabrics."""
+    register("jersey", "polyfold_standard.fabrics.jersey:Jersey", "knitted cotton, limp: t-shirts")
+    register("poplin", "polyfold_standard.fabrics.poplin:Poplin", "plain-woven cotton: shirts, napkins, tea towels")
+    register("denim", "polyfold_standard.fabrics.denim:Denim", "cotton twill, stiff: jeans")
+    register("terry", "polyfold_standard.fabrics.terry:Terry", "looped cotton, thick and soft: bath towels")
+    register("felt", "polyfold_standard.fabrics.felt:Felt", "pressed wool, thick, alike in all directions")
 
 
 @hookimpl

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import closing
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from polyfold import plugins, viz
 from polyfold.api._loaders import garment as named_garment
-from polyfold.config import Experiment
+from polyfold.config import USUAL, ComponentSpec, Experiment
 from polyfold.errors import ConfigError
 from polyfold.evaluation import judge
 from polyfold.evaluation._suites import find_task
@@ -41,13 +42,13 @@ def fold(
     Args:
         instruction: what to do, for example ``"fold the t-shirt into a rectangular block"``.
         garment: a kind (``tshirt``, ``pants``, ``square``, ``rectangle``, ...), of which ``seed`` picks the instance,
-            or a garment made by :func:`polyfold.garment`.
+            or a garment made by :func:`polyfold.garment`, which keeps its fabric unless the experiment names one.
         seed: picks the garment and how it lies, and the agent's random choices.
         task: id of the standard task to judge against; by default the plan is recognised as one where it is.
         out: directory for ``episode.json``, ``transcript.jsonl``, ``filmstrip.png`` and ``fold.gif``.
         experiment: the components; by default those that need no key and no GPU.
         observer: an object whose ``on_episode_start``, ``on_step`` and ``on_episode_end`` are called as it happens.
-        components: single components instead: ``policy="farthest"``, ``llm={"name": "rules"}``.
+        components: single components instead: ``policy="farthest"``, ``fabric="denim"``, ``llm={"name": "rules"}``.
 
     Returns:
         The episode; it shows itself in Jupyter.
@@ -57,7 +58,10 @@ def fold(
         PolyfoldError: if grounding, planning or simulation fail; ``out`` then holds what was done until then.
     """
     experiment = (experiment or Experiment()).override(components)
-    garment = named_garment(garment, seed=seed, experiment=experiment) if isinstance(garment, str) else garment
+    if isinstance(garment, str):
+        garment = named_garment(garment, seed=seed, experiment=experiment)
+    elif experiment.fabric != ComponentSpec(name=USUAL):
+        garment = replace(garment, fabric=plugins.make_fabric(experiment.fabric, garment.kind))
     frames: list[Observation] | None = None if out is None else []
     folder = None if out is None else _prepare(Path(out))
     if observer is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold import plugins
-from polyfold.config import Experiment
+from polyfold.config import ComponentSpec, Experiment
 from polyfold.errors import GarmentError
 from polyfold.garments import Garment, Pattern
 from polyfold.garments._obj import load_obj
@@ -62,6 +62,7 @@ def garment(
     keypoints: str | Path | None = None,
     size: float | None = None,
     edge_length: float | None = None,
+    fabric: str | dict[str, Any] | ComponentSpec | None = None,
     experiment: Experiment | None = None,
 ) -> Garment:
     """A garment of a kind: seeded, from a mesh file, or the twin of a real one.
@@ -76,14 +77,22 @@ def garment(
         keypoints: JSON file, keypoint name -> vertex index of the mesh.
         size: longest side of the real garment's bounding box [m]; by default typical of the kind.
         edge_length: mesh size [m]; by default what suits the kind.
-        experiment: whose grounding finds the keypoints of a real garment.
+        fabric: what it is made of: a name, or a table with ``name`` and constants (without a name, of the usual
+            fabric); by default what the experiment names.
+        experiment: whose grounding finds the keypoints of a real garment, and whose fabric it is made of: by default
+            what its kind usually is.
 
     Raises:
         GarmentError: if a file can't be used, or more than one source is given.
         GroundingError: if the outline can't be explained as this kind.
-        PluginError: if no plugin provides the kind.
+        PluginError: if no plugin provides the kind or the fabric.
+        ConfigError: if a constant of the fabric is unknown or not plausible.
     """
-    generator = plugins.create("garments", kind)
+    experiment = experiment or Experiment()
+    if fabric is not None:
+        experiment = experiment.override({"fabric": fabric})
+    # Before the work of cutting one out: names are often mistyped.
+    cloth = plugins.make_fabric(experiment.fabric, kind)
     sources = {"mask": mask, "outline": outline, "image": image, "mesh": mesh}
     given = [name for name, source in sources.items() if source is not None]
     if len(given) > 1:
@@ -93,11 +102,12 @@ def garment(
     if not given:
         if size is not None:
             raise GarmentError("the size of a seeded garment comes from its seed; give a mask, outline, image or mesh")
-        return generator.generate(seed) if edge_length is None else generator.generate(seed, edge_length)
+        return plugins.generate_garment(kind, seed, edge_length, experiment.fabric)
     if mesh is not None:
-        return _from_mesh(kind, mesh, keypoints, size, edge_length)
+        return replace(_from_mesh(kind, mesh, keypoints, size, edge_length), fabric=cloth)
     found = ground(kind, mask=mask, outline=outline, image=image, experiment=experiment)
-    return twin_from_outline(found.outline, kind, found.keypoints, pattern_of(kind), size, edge_length)
+    twin = twin_from_outline(found.outline, kind, found.keypoints, pattern_of(kind), size, edge_length)
+    return replace(twin, fabric=cloth)
 
 
 def pattern_of(kind: str) -> Pattern:

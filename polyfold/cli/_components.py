@@ -7,10 +7,11 @@ import json
 from collections.abc import Sequence
 from typing import Any, get_args
 
-from polyfold.config import ComponentSpec, Experiment, load_experiment
+from polyfold.config import USUAL, ComponentSpec, Experiment, load_experiment
 from polyfold.errors import ConfigError
 
 KINDS = tuple(name for name, field in Experiment.model_fields.items() if field.annotation is ComponentSpec)
+MEANING = {USUAL: ", what the kind of garment is usually made of (see: polyfold garments)"}
 GUIDANCE = get_args(Experiment.model_fields["guidance"].annotation)
 
 
@@ -19,6 +20,7 @@ def add_component_options(parser: argparse.ArgumentParser, kinds: Sequence[str] 
     group = parser.add_argument_group("components (see: polyfold plugins)")
     for kind in kinds:
         default = getattr(Experiment(), kind).name
+        default += MEANING.get(default, "")
         group.add_argument(f"--{kind}", metavar="NAME[:ARG]", help=f"default: {default}")
     if "agent" in kinds:
         default = Experiment().guidance
@@ -29,7 +31,7 @@ def add_component_options(parser: argparse.ArgumentParser, kinds: Sequence[str] 
         metavar="KIND.PARAM=VALUE",
         action="append",
         default=[],
-        help="one parameter, for example --set simulator.cloth_friction=0.6; may be repeated",
+        help="one parameter, for example --set fabric.thickness=0.002; may be repeated",
     )
 
 
@@ -51,7 +53,7 @@ def _parse(assignment: str) -> tuple[str, str, Any]:
     if not (equals and dot and kind in KINDS):
         raise ConfigError(
             f"--set {assignment!r} does not read KIND.PARAM=VALUE with KIND one of {', '.join(KINDS)}; "
-            "for example --set simulator.cloth_friction=0.6"
+            "for example --set fabric.thickness=0.002"
         )
     try:
         return kind, param, json.loads(text)

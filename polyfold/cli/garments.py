@@ -1,4 +1,4 @@
-"""``polyfold garments``: a picture sheet of seeded garments, as the camera sees them."""
+"""``polyfold garments``: a picture sheet of seeded garments, as the camera sees them, and what they are made of."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 import polyfold
 from polyfold import plugins
 from polyfold.cli._components import add_component_options, experiment_from
+from polyfold.plugins._fabrics import default_fabric
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -16,21 +17,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--count", type=int, default=6, metavar="N", help="garments of each kind (default: 6)")
     parser.add_argument("--seed", type=int, default=0, help="first seed (default: 0)")
     parser.add_argument("--out", type=Path, default=Path("garments.png"), metavar="PNG", help="default: garments.png")
-    add_component_options(parser, ["simulator"])
+    add_component_options(parser, ["simulator", "fabric"])
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw the sheet."""
     from polyfold import viz
 
-    simulator = plugins.create_chosen(experiment_from(arguments), "simulator")
+    experiment = experiment_from(arguments)
+    simulator = plugins.create_chosen(experiment, "simulator")
     pictures = {}
-    for kind in arguments.garment or plugins.names("garments"):
+    kinds = arguments.garment or plugins.names("garments")
+    for kind in kinds:
         for seed in range(arguments.seed, arguments.seed + arguments.count):
-            garment = polyfold.garment(kind, seed)
+            garment = polyfold.garment(kind, seed, experiment=experiment)
             pictures[garment.name] = simulator.reset(garment, seed).rgb
     simulator.close()
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     viz.garment_sheet(pictures, columns=arguments.count, path=arguments.out)
     print(f"{len(pictures)} garments: {arguments.out}")
+    for kind in kinds:
+        made_of = plugins.make_fabric(experiment.fabric, kind).name
+        usually = default_fabric(kind)
+        print(f"  {kind:<16} {made_of}" + ("" if made_of == usually else f" (usually {usually})"))
     return 0

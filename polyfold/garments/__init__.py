@@ -1,8 +1,9 @@
-"""Garments: triangle meshes with named keypoints, how they are cut and sewn, and how their corners are named.
+"""Garments: triangle meshes with named keypoints, their fabric, how they are cut and sewn, how corners are named.
 
 Garments from files and pictures of real ones are made by :func:`polyfold.garment`.
 """
 
+from polyfold.garments._fabric import Fabric
 from polyfold.garments._garment import Garment, Mesh
 from polyfold.garments._naming import name_by_pose
 from polyfold.garments._outline import Outline, curved_outline
@@ -11,6 +12,7 @@ from polyfold.garments._pattern import Pattern
 from polyfold.garments._silhouette import find_cloth
 
 __all__ = [
+    "Fabric",
     "Garment",
     "Mesh",
     "Outline",

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold.garments._fabric import UNCHOSEN, Fabric
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
@@ -49,7 +51,7 @@ class Mesh:
 
 @dataclass(frozen=True, eq=False)
 class Garment:
-    """One garment: its mesh, its named ground-truth keypoints and its looks.
+    """One garment: its mesh, its named ground-truth keypoints, its looks and its fabric.
 
     Attributes:
         kind: a registered garment kind, e.g. ``tshirt``; selects the polygon template. (Elsewhere ``kind`` may mean a
@@ -61,6 +63,8 @@ class Garment:
         colours: outside and inside colour, RGB in 0..255.
         cyclic: keypoint names in polygon order, starting at bottom_left, for shapes whose naming depends on how they
             lie (square, rectangle): at reset the edge nearest the image's top becomes the top. Empty otherwise.
+        fabric: what it is made of. Generators need not give one: :func:`polyfold.garment` and
+            :func:`polyfold.plugins.generate_garment` put the chosen one in. Poplin until then.
     """
 
     kind: str
@@ -70,3 +74,4 @@ class Garment:
     keypoints: Mapping[str, int]
     colours: tuple[tuple[int, int, int], tuple[int, int, int]] = ((66, 133, 180), (214, 204, 190))
     cyclic: tuple[str, ...] = ()
+    fabric: Fabric = UNCHOSEN

@@ -1,9 +1,11 @@
 """Discovery of plugins and the catalog of components: names become objects here and nowhere else.
 
 What each kind of component must do stands in :mod:`polyfold.plugins.interfaces`, how to register one and how to watch
-runs in :mod:`polyfold.plugins.hookspecs`. The functions here are the methods of the process's own :class:`Host`.
+runs in :mod:`polyfold.plugins.hookspecs`. The functions here are the methods of the process's own :class:`Host`;
+:func:`generate_garment` and :func:`make_fabric` ask it for garments with their fabric.
 """
 
+from polyfold.plugins._fabrics import generate_garment, make_fabric
 from polyfold.plugins._host import HOST, Host
 
 blame = HOST.blame
@@ -31,6 +33,8 @@ __all__ = [
     "create",
     "create_chosen",
     "find",
+    "generate_garment",
+    "make_fabric",
     "names",
     "observe",
     "refresh",

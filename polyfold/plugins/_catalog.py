@@ -60,6 +60,14 @@ def _installed(package: str) -> bool:
     return True
 
 
+def refuse_reserved(kind: str, name: str) -> None:
+    """Raises PluginError for the one name that stands for whichever fabric a kind of garment is usually made of."""
+    from polyfold.config import USUAL
+
+    if (kind, name) == ("fabrics", USUAL):
+        raise PluginError(f"the name {name!r} stands for the usual fabric of each kind of garment; choose another")
+
+
 class Catalog:
     """Plugins found and components registered: ``components[kind][name]`` lists who registered the name."""
 
@@ -75,6 +83,7 @@ class Catalog:
                 raise PluginError(
                     f"the component name {name!r} is not allowed; use lower-case letters, digits, '+', '-' and '_'"
                 )
+            refuse_reserved(kind, name)
             if isinstance(target, str) and ":" not in target:
                 raise PluginError(f"the target {target!r} of {name!r} must read 'package.module:Class'")
             self.add(kind, Component(name, target, summary, tuple(needs), plugin))

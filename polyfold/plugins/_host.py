@@ -18,10 +18,10 @@ import pluggy
 from polyfold.errors import ConfigError, PluginError, did_you_mean, validation_problem
 from polyfold.plugins import hookspecs
 from polyfold.plugins._calling import call, implementations
-from polyfold.plugins._catalog import Catalog, Component, Plugin, Problem
+from polyfold.plugins._catalog import Catalog, Component, Plugin, Problem, refuse_reserved
 from polyfold.plugins._discovery import disabled_by_environment, discover, new_manager
 from polyfold.plugins._observation import Observers
-from polyfold.plugins._traits import Configurable, TakesArgument
+from polyfold.plugins._traits import Configurable, TakesArgument, moved_to
 from polyfold.plugins.hookspecs import singular
 
 if TYPE_CHECKING:
@@ -96,6 +96,7 @@ class Host:
             needs: distributions it needs.
         """
         _check_kind(kind)
+        refuse_reserved(kind, name)
         by_hand = Plugin("<session>", "", "", "registered by hand")
         self._by_hand.pop((kind, name), None)
         self._by_hand[kind, name] = Component(name, target, summary, tuple(needs), by_hand)
@@ -187,7 +188,10 @@ class Host:
         return cls(**components) if config is None else cls(config, **components)
 
     def create_chosen(self, experiment: Experiment, field: str) -> Any:
-        """Construct the component that an experiment names in ``field``, for example ``"policy"``."""
+        """Construct the component that an experiment names in ``field``, for example ``"policy"``.
+
+        The fabric depends on the garment: see :func:`polyfold.plugins.make_fabric`.
+        """
         spec: ComponentSpec = getattr(experiment, field)
         return self.create(hookspecs.plural(field), spec.name, spec.params)
 
@@ -205,7 +209,7 @@ class Host:
                 raise ConfigError(f"{owner} takes no argument; write {name!r} without ':{argument}'")
             values[cls.argument] = argument
         if isinstance(cls, Configurable):
-            return cls, _configured(cls.Config, values, owner)
+            return cls, _configured(cls, values, owner)
         if values:
             raise ConfigError(f"{owner} has no parameters; remove {', '.join(sorted(values))}")
         return cls, None
@@ -258,14 +262,16 @@ def _importable(target: type | str) -> str | None:
     return f"{target.__module__}:{target.__qualname__}"
 
 
-def _configured(config_class: Any, values: dict[str, Any], owner: str) -> Any:
+def _configured(cls: Any, values: dict[str, Any], owner: str) -> Any:
     from pydantic import ValidationError
 
+    known = cls.Config.model_fields
     for name in values:
-        if name not in config_class.model_fields:
-            raise ConfigError(f"{owner} has no parameter {name!r}; {did_you_mean(name, config_class.model_fields)}")
+        if name not in known:
+            advice = moved_to(cls, name) or did_you_mean(name, known)
+            raise ConfigError(f"{owner} has no parameter {name!r}; {advice}")
     try:
-        return config_class(**values)
+        return cls.Config(**values)
     except ValidationError as error:
         raise ConfigError(f"{owner} {validation_problem(error)}") from error
 

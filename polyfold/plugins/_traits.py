@@ -5,7 +5,7 @@ They stand apart so that listing and constructing components loads neither numpy
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, runtime_checkable
 
@@ -18,6 +18,20 @@ class Configurable(Protocol):
     """A component with parameters: the fields of a pydantic model; an instance of it is the constructor's argument."""
 
     Config: ClassVar[type[BaseModel]]
+
+
+@runtime_checkable
+class MovedParameters(Protocol):
+    """A component that once had parameters which now stand elsewhere: old name -> where, ``fabric.thickness``."""
+
+    moved: ClassVar[Mapping[str, str]]
+
+
+@runtime_checkable
+class MadeOf(Protocol):
+    """A kind of garment that says which fabric it is usually made of, by name; others are made of ``poplin``."""
+
+    default_fabric: ClassVar[str]
 
 
 @runtime_checkable
@@ -55,3 +69,9 @@ class ReadsPrompts(Protocol):
     def prompts_read(cls, config: Any) -> Sequence[str]:
         """The prompts that it may use with these parameters, each as ``role@version``."""
         ...
+
+
+def moved_to(cls: Any, parameter: str) -> str | None:
+    """What to do about a parameter that a component no longer has; None if it never had it."""
+    place = cls.moved.get(parameter) if isinstance(cls, MovedParameters) else None
+    return None if place is None else f"use {place} instead"

@@ -52,6 +52,7 @@ KINDS = (
     "llms",
     "agents",
     "garments",
+    "fabrics",
     "tasks",
     "metrics",
     "criteria",
@@ -113,7 +114,17 @@ def register_agents(register: Register) -> None:
 def register_garments(register: Register) -> None:
     """Register kinds of garment: :class:`polyfold.plugins.interfaces.GarmentKind`, polygon template and generator.
 
-    The name is the kind, as users type it: ``--garment skirt``.
+    The name is the kind, as users type it: ``--garment skirt``. It may say what it is usually made of
+    (:class:`polyfold.plugins.interfaces.MadeOf`); it is poplin otherwise.
+    """
+
+
+@hookspec
+def register_fabrics(register: Register) -> None:
+    """Register fabrics: :class:`polyfold.plugins.interfaces.FabricKind`, what garments are made of.
+
+    The name is what users type: ``--fabric denim``. ``usual`` is taken: it stands for the fabric that a kind of garment
+    is usually made of (:class:`polyfold.plugins.interfaces.MadeOf`).
     """
 
 

@@ -18,9 +18,17 @@ from typing import Any, ClassVar, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.garments import Garment, Pattern
+from polyfold.garments import Fabric, Garment, Pattern
 from polyfold.geometry import FoldLine
-from polyfold.plugins._traits import Configurable, ReadsFiles, ReadsPrompts, TakesArgument, UsesComponents
+from polyfold.plugins._traits import (
+    Configurable,
+    MadeOf,
+    MovedParameters,
+    ReadsFiles,
+    ReadsPrompts,
+    TakesArgument,
+    UsesComponents,
+)
 from polyfold.polygon import Template
 from polyfold.types import Action, ActionMap, Decision, Observation, Outcome, Scene, SimState, Subgoal, Threshold
 from polyfold.types._conversation import Message, Reply
@@ -30,12 +38,15 @@ __all__ = [
     "Agent",
     "Configurable",
     "Conversation",
+    "FabricKind",
     "GarmentKind",
     "Goal",
     "Grounding",
     "HasReferenceConfig",
     "LabelledMetric",
+    "MadeOf",
     "Metric",
+    "MovedParameters",
     "Planner",
     "Policy",
     "ReadsFiles",
@@ -283,7 +294,7 @@ class GarmentKind(Protocol):
     def generate(self, seed: int, edge_length: float = 0.0125) -> Garment:
         """The seeded garment, meshed at about ``edge_length`` [m]; the default is the kind's own.
 
-        The same seed gives the same garment at every edge length.
+        The same seed gives the same garment at every edge length. Its fabric is put in by the host.
         """
         ...
 
@@ -293,6 +304,15 @@ class SewnKind(Protocol):
     """A kind of garment that says how it is sewn: real garments of it can be twinned and meshes imported."""
 
     pattern: ClassVar[Pattern]
+
+
+@runtime_checkable
+class FabricKind(Protocol):
+    """What garments are made of. Its ``Config`` holds the constants, so that each can be overridden."""
+
+    def fabric(self) -> Fabric:
+        """The fabric. Raises GarmentError if a constant is not plausible."""
+        ...
 
 
 @runtime_checkable

@@ -34,6 +34,27 @@ def test_json_is_one_object_with_everything_in_it(polyfold):
     assert {"grounding", "language", "policy", "execution"} == set(step["seconds"])
 
 
+def test_the_fabric_is_chosen_and_recorded(polyfold):
+    fold = ("fold", "fold the square in half", "--garment", "square", "--json", *COARSE)
+    usual = json.loads(polyfold(*fold).out)
+    assert usual["garment"]["fabric"]["name"] == "poplin"
+    assert usual["experiment"]["fabric"] == {"name": "usual", "params": {}}
+    felt = json.loads(polyfold(*fold, "--fabric", "felt", "--set", "fabric.thickness=0.0015").out)
+    assert felt["garment"]["fabric"]["name"] == "felt"
+    assert felt["garment"]["fabric"]["constants"]["thickness"] == 0.0015
+    thicker = json.loads(polyfold(*fold, "--set", "fabric.thickness=0.0015").out)
+    assert thicker["garment"]["fabric"]["constants"] != felt["garment"]["fabric"]["constants"]
+    assert thicker["garment"]["fabric"]["name"] == "poplin"
+
+
+def test_a_garment_keeps_its_fabric_unless_one_is_named():
+    import polyfold
+
+    cloth = polyfold.garment("square", 2001, edge_length=0.03, fabric="felt")
+    assert polyfold.fold("fold it in half", cloth).garment.fabric.name == "felt"
+    assert polyfold.fold("fold it in half", cloth, fabric="denim").garment.fabric.name == "denim"
+
+
 def test_the_same_seed_gives_the_same_episode(polyfold):
     episodes = []
     for _ in range(2):
@@ -66,6 +87,9 @@ def test_what_cannot_be_done_is_refused_with_a_reason_and_nothing_is_folded(poly
         (("--policy", "casso"), "did you mean 'caso'"),
         (("--set", "policy.gama=1"), "did you mean 'gamma'"),
         (("--set", "nonsense"), "KIND.PARAM=VALUE"),
+        (("--fabric", "demin"), "did you mean 'denim'"),
+        (("--set", "fabric.thickness=1"), "thickness"),
+        (("--set", "simulator.thickness=0.002"), "use fabric.thickness"),
         (("--task", "tshirt-haf-hem"), "tshirt-half-hem"),
         (("--config", "nowhere.toml"), "there is no file"),
         (("--outline", "nowhere.json"), "nowhere.json"),
@@ -146,6 +170,8 @@ def test_garments_draws_a_sheet(polyfold, tmp_path):
     result = polyfold("garments", "--garment", "square", "--garment", "pants", "--count", 2, "--out", out)
     assert result.status == 0, result.err
     assert Image.open(out).width > 300
+    assert "square           poplin" in result.out
+    assert "pants            denim" in result.out
 
 
 def test_garments_are_seen_by_the_simulator_that_is_named(polyfold, tmp_path):

@@ -42,6 +42,7 @@ class Pants:
 
     kind: ClassVar[str] = "pants"
     pattern: ClassVar[Pattern] = PATTERN
+    default_fabric: ClassVar[str] = "denim"
 
     def template(self) -> Template:
         """The polygon template."""

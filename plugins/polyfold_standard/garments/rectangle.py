@@ -18,6 +18,8 @@ class Rectangle:
 
     kind: ClassVar[str] = "rectangle"
     pattern: ClassVar[Pattern] = CLOTH
+    # Of this size they are napkins and tea towels, not bath towels, which would be terry.
+    default_fabric: ClassVar[str] = "poplin"
 
     def template(self) -> Template:
         """The polygon template."""

@@ -18,6 +18,7 @@ class Square:
 
     kind: ClassVar[str] = "square"
     pattern: ClassVar[Pattern] = CLOTH
+    default_fabric: ClassVar[str] = "poplin"
 
     def template(self) -> Template:
         """The polygon template."""

@@ -49,6 +49,7 @@ class TShirt:
 
     kind: ClassVar[str] = "tshirt"
     pattern: ClassVar[Pattern] = PATTERN
+    default_fabric: ClassVar[str] = "jersey"
 
     def template(self) -> Template:
         """The polygon template."""

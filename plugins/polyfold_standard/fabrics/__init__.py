@@ -1,0 +1,1 @@
+"""The bundled fabrics, one a module, each constant with its source."""

@@ -1,0 +1,80 @@
+"""Where garments get their fabric: the one that is chosen, or the one that their kind is usually made of."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from polyfold.plugins._host import HOST
+from polyfold.plugins._traits import MadeOf
+
+if TYPE_CHECKING:
+    from polyfold.config import ComponentSpec
+    from polyfold.garments import Fabric, Garment
+
+FALLBACK = "poplin"
+"""What kinds of garment are made of that do not say: a plain cotton weave of medium weight and stiffness."""
+
+
+def is_usual(kind: str, spec: ComponentSpec) -> bool:
+    """Whether a choice stands for the usual fabric of whichever kind of garment it is."""
+    from polyfold.config import USUAL
+
+    return kind == "fabrics" and spec.name == USUAL
+
+
+def usual_parameters() -> list[str]:
+    """What can be overridden of the usual fabric: the constants that every fabric has."""
+    from polyfold.garments import Fabric
+
+    return list(Fabric.LIMITS)
+
+
+def default_fabric(garment_kind: str) -> str:
+    """Name of the fabric that a kind of garment is usually made of; ``poplin`` where its class does not say.
+
+    Raises:
+        PluginError: if no plugin provides the kind.
+    """
+    cls = HOST.component_class("garments", garment_kind)
+    return cls.default_fabric if isinstance(cls, MadeOf) else FALLBACK
+
+
+def chosen_fabric(choice: ComponentSpec, garment_kind: str) -> ComponentSpec:
+    """The component behind a choice: itself, or the usual fabric of the kind with the choice's parameters."""
+    if not is_usual("fabrics", choice):
+        return choice
+    return choice.model_copy(update={"name": default_fabric(garment_kind)})
+
+
+def make_fabric(choice: ComponentSpec, garment_kind: str) -> Fabric:
+    """The fabric that an experiment's ``fabric`` means for a kind of garment.
+
+    Raises:
+        PluginError: if there is no such fabric or kind; the message suggests the nearest.
+        ConfigError: if a constant is unknown or not plausible.
+    """
+    chosen = chosen_fabric(choice, garment_kind)
+    return HOST.create("fabrics", chosen.name, chosen.params).fabric()
+
+
+def generate_garment(
+    garment_kind: str, seed: int, edge_length: float | None = None, fabric: ComponentSpec | None = None
+) -> Garment:
+    """The seeded garment of a kind, made of a fabric.
+
+    Args:
+        garment_kind: registered kind, for example ``tshirt``.
+        seed: which one.
+        edge_length: mesh size [m]; by default the kind's own.
+        fabric: what it is made of; by default what the kind usually is.
+
+    Raises:
+        PluginError: if there is no such kind or fabric.
+        ConfigError: if a constant of the fabric is unknown or not plausible.
+    """
+    from polyfold.config import Experiment
+
+    generator = HOST.create("garments", garment_kind)
+    garment = generator.generate(seed) if edge_length is None else generator.generate(seed, edge_length)
+    return replace(garment, fabric=make_fabric(fabric or Experiment().fabric, garment_kind))
