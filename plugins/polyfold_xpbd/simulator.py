@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,17 +38,18 @@ class XpbdSimulator:
         fill: float = Field(
             default=0.8, gt=0.1, le=1.0, description="share of the image that the garment's circle fills"
         )
-        thickness: float = Field(default=0.0035, gt=0.001, le=0.02, description="distance of touching layers [m]")
-        bending_length: float = Field(
-            default=0.010, ge=0.0, le=0.1, description="Peirce bending length of the fabric [m]"
-        )
-        table_friction: float = Field(default=0.8, ge=0.0, le=2.0, description="Coulomb friction, cloth on table")
-        cloth_friction: float = Field(default=0.6, ge=0.0, le=2.0, description="Coulomb friction, cloth on cloth")
         order: int = Field(
             default=1,
             ge=0,
             description="seed of the order in which particles and contacts are visited; 0 is the mesh's own",
         )
+
+    moved: ClassVar[dict[str, str]] = {
+        "thickness": "fabric.thickness",
+        "bending_length": "fabric.bending_length_warp and fabric.bending_length_weft",
+        "table_friction": "fabric.table_friction",
+        "cloth_friction": "fabric.cloth_friction",
+    }
 
     @classmethod
     def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:
@@ -74,7 +75,7 @@ class XpbdSimulator:
         self._camera = Camera.framing(2 * radius / self.config.fill)
         self._order, mesh = _renumbered(garment.mesh, self.config.order)
         self._rank = np.argsort(self._order)
-        self._solver = Solver(mesh, ((flat - centre) @ turn)[self._order], self.config)
+        self._solver = Solver(mesh, ((flat - centre) @ turn)[self._order], garment.fabric)
         self._solver.settle(0.3)
         self._keypoints = name_by_pose(garment.cyclic, garment.keypoints, self._solver.positions()[self._rank])
         self._two_layers = garment.mesh.layers == 2

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.garments import Mesh
+from polyfold.garments import Fabric, Mesh
 from polyfold.geometry import Camera
 from polyfold.types import Action
 from polyfold_xpbd.grasp import plan_motion, take_hold
@@ -50,25 +50,25 @@ def _constraints(mesh: Mesh, bending_length: float) -> tuple[ClothModel, TetherM
 class Solver:
     """One cloth: buffers of the compiled loop, and folding, settling and waiting with them."""
 
-    def __init__(self, mesh: Mesh, flat: NDArray[np.float64], config: Any) -> None:
+    def __init__(self, mesh: Mesh, flat: NDArray[np.float64], fabric: Fabric) -> None:
         count = len(flat)
-        self._model, self._tethers = _constraints(mesh, config.bending_length)
-        self._thickness = config.thickness
+        self._model, self._tethers = _constraints(mesh, fabric.bending_length)
+        self._thickness = fabric.thickness
         edge_length = self._model.edge_length
         self.dt = time_step(edge_length)
         radius = DISC_RADIUS * edge_length
         self._settings = np.array(
             [
-                self.dt, radius, config.thickness, PAD * edge_length, config.table_friction, config.cloth_friction,
-                RELAXATION, LARGEST_PUSH * config.thickness, config.thickness / 2, TOP_SPEED,
+                self.dt, radius, fabric.thickness, PAD * edge_length, fabric.table_friction, fabric.cloth_friction,
+                RELAXATION, LARGEST_PUSH * fabric.thickness, fabric.thickness / 2, TOP_SPEED,
                 RECOVERY * self.dt,
             ],
             np.float32,
         )  # fmt: skip
         self.x = np.empty((count, 3), np.float32)
         self.x[:, :2] = flat
-        self.x[:, 2] = config.thickness / 2 + config.thickness * mesh.layer
-        self.x[mesh.seam, 2] = config.thickness
+        self.x[:, 2] = fabric.thickness / 2 + fabric.thickness * mesh.layer
+        self.x[mesh.seam, 2] = fabric.thickness
         self.v = np.zeros((count, 3), np.float32)
         self._previous, self._listed = self.x.copy(), self.x.copy()
         self._normals = np.zeros((count, 3), np.float32)

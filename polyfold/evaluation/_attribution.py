@@ -64,7 +64,7 @@ def attribute_open(episode: Episode, mask: NDArray[np.bool_]) -> str:
     if len(lines) != len(settled):
         return "execution"
     found = fidelity(
-        mask, episode.final_state, episode.initial_state, episode.garment.mesh, lines, reference="self-referenced"
+        mask, episode.final_state, episode.initial_state, episode.garment, lines, reference="self-referenced"
     )
     return "subgoal" if found.iou >= AS_PLANNED else "execution"
 

@@ -53,7 +53,7 @@ def judge(episode: Episode, task_id: str | None = None) -> Episode:
         final_mask(episode),
         episode.final_state,
         episode.initial_state,
-        episode.garment.mesh,
+        episode.garment,
         lines,
         "self-referenced" if task_id is None else "keypoints",
     )

@@ -83,7 +83,7 @@ def ideal_reference(task: Task, garment: Garment, flat: SimState) -> Reference:
         flat: the state before the first fold.
     """
     lines = fold_lines(task, flat.keypoint_pixels())
-    folded = fold_step_by_step(flat, garment.mesh, lines)
+    folded = fold_step_by_step(flat, garment, lines)
     after = tuple(replace(flat, positions=ideal.positions) for ideal in folded)
     return Reference(Outcome(flat, after[-1], folded[-1].mask), after)
 
@@ -102,6 +102,7 @@ def _key(task: Task, garment: Garment, seed: int, experiment: Experiment) -> str
     content = {
         "steps": task.model_dump(mode="json")["steps"],
         "mesh": hashlib.sha256(garment.mesh.vertices.tobytes() + garment.mesh.triangles.tobytes()).hexdigest(),
+        "fabric": garment.fabric.constants(),
         "seed": seed,
         "experiment": experiment.model_dump(mode="json"),
         "fingerprint": fingerprint([experiment], [("garments", garment.kind)], commits=False).digest(),

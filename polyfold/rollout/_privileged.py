@@ -51,7 +51,7 @@ def privileged_inputs(task: Task, garment: Garment, flat: SimState, seen: Observ
         seen: the picture of that state; its first pixel gives the table's colour.
     """
     lines = fold_lines(task, flat.keypoint_pixels())
-    folded = fold_step_by_step(flat, garment.mesh, lines)
+    folded = fold_step_by_step(flat, garment, lines)
     images = tuple(_drawn(ideal.mask, garment.colours[0], seen.rgb[0, 0]) for ideal in folded)
     return PrivilegedInputs(tuple(lines), tuple(describe(fold) for fold in task.steps), images)
 

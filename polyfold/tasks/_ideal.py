@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.garments import Mesh
+from polyfold.garments import Garment, Mesh
 from polyfold.geometry import Camera, FoldLine, iou
 from polyfold.geometry._masks import fill_polygon
 from polyfold.polygon._covering import covered_area, overlap_area, shapes, solid_parts
@@ -21,9 +21,6 @@ from polyfold.types._fidelity import Fidelity, Reference
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
-
-LAYER_THICKNESS = 0.0035
-"""Height of one layer of cloth [m], as thick as the ``xpbd`` simulator makes it by default."""
 
 MOVED = 0.020
 """Particles that the ideal moves further than this [m] count as moved."""
@@ -84,26 +81,21 @@ class _Stack:
     sheet_of: NDArray[np.int64]
 
 
-def fold_ideally(
-    flat: SimState, mesh: Mesh, lines: Sequence[FoldLine], layer_thickness: float = LAYER_THICKNESS
-) -> IdealFold:
+def fold_ideally(flat: SimState, garment: Garment, lines: Sequence[FoldLine]) -> IdealFold:
     """Fold the flat garment along lines: everything left of a line is mirrored across it, as one rigid stack.
 
     Args:
         flat: the state before the first fold.
-        mesh: the garment's mesh; gives the silhouette and the layer of each particle.
+        garment: the garment; its mesh gives the silhouette and the layer of each particle, its fabric the thickness.
         lines: directed fold lines [px], in order.
-        layer_thickness: height of one layer of cloth [m].
     """
-    stack = _flat_stack(flat, mesh)
+    stack = _flat_stack(flat, garment.mesh)
     for line in lines:
         stack = _folded(stack, line)
-    return _as_seen(stack, flat, layer_thickness)
+    return _as_seen(stack, flat, garment.fabric.thickness)
 
 
-def fold_step_by_step(
-    flat: SimState, mesh: Mesh, lines: Iterable[FoldLine], layer_thickness: float = LAYER_THICKNESS
-) -> list[IdealFold]:
+def fold_step_by_step(flat: SimState, garment: Garment, lines: Iterable[FoldLine]) -> list[IdealFold]:
     """Fold the flat garment along lines and keep what it is after each of them.
 
     Args: as in :func:`fold_ideally`.
@@ -111,10 +103,10 @@ def fold_step_by_step(
     Returns:
         One ideal fold for each line; the last one is what :func:`fold_ideally` gives.
     """
-    stack, found = _flat_stack(flat, mesh), []
+    stack, found = _flat_stack(flat, garment.mesh), []
     for line in lines:
         stack = _folded(stack, line)
-        found.append(_as_seen(stack, flat, layer_thickness))
+        found.append(_as_seen(stack, flat, garment.fabric.thickness))
     return found
 
 
@@ -122,10 +114,9 @@ def fidelity(
     final_mask: NDArray[np.bool_],
     final: SimState,
     flat: SimState,
-    mesh: Mesh,
+    garment: Garment,
     lines: Sequence[FoldLine],
     reference: Reference,
-    layer_thickness: float = LAYER_THICKNESS,
 ) -> Fidelity:
     """Compare a result with the ideal fold of the garment it started from.
 
@@ -133,12 +124,11 @@ def fidelity(
         final_mask: the cloth in the last picture, bool, shape (H, W).
         final: the state after the last fold.
         flat: the state before the first fold.
-        mesh: the garment's mesh.
+        garment: the garment.
         lines: the ideal fold lines [px].
         reference: where the lines come from.
-        layer_thickness: height of one layer of cloth [m].
     """
-    ideal = fold_ideally(flat, mesh, lines, layer_thickness)
+    ideal = fold_ideally(flat, garment, lines)
     travel = np.linalg.norm(ideal.positions[:, :2] - flat.positions[:, :2], axis=1)
     moved = travel > MOVED
     error = np.linalg.norm(final.positions[moved, :2] - ideal.positions[moved, :2], axis=1)
@@ -177,21 +167,21 @@ def _laid_on(below: Sequence[_Sheet], lifted: Iterable[Facet], line: FoldLine, l
     return _Sheet(turned.facets, max(under, default=-1) + 1)
 
 
-def _as_seen(stack: _Stack, flat: SimState, layer_thickness: float) -> IdealFold:
+def _as_seen(stack: _Stack, flat: SimState, thickness: float) -> IdealFold:
     camera, floor = flat.camera, float(flat.positions[:, 2].min())
     layer = np.array([sheet.layer for sheet in stack.sheets])[stack.sheet_of]
     positions = camera.to_world(stack.points)
-    positions[:, 2] = floor + layer_thickness * layer
+    positions[:, 2] = floor + thickness * layer
     area = covered_area(shape for sheet in stack.sheets for shape in sheet.shapes)
-    return IdealFold(positions, layer, _silhouette(stack.sheets, camera, floor, layer_thickness), area)
+    return IdealFold(positions, layer, _silhouette(stack.sheets, camera, floor, thickness), area)
 
 
-def _silhouette(sheets: Iterable[_Sheet], camera: Camera, floor: float, layer_thickness: float) -> NDArray[np.bool_]:
+def _silhouette(sheets: Iterable[_Sheet], camera: Camera, floor: float, thickness: float) -> NDArray[np.bool_]:
     """All sheets at the height of their layer, as the camera sees them, shape (H, W)."""
     mask = np.zeros((camera.height, camera.width), bool)
     for sheet in sheets:
         for facet in sheet.facets:
             world = camera.to_world(facet.polygon)
-            world[:, 2] = floor + layer_thickness * sheet.layer
+            world[:, 2] = floor + thickness * sheet.layer
             mask |= fill_polygon(camera.to_pixels(world), camera.height, camera.width)
     return mask

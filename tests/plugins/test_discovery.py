@@ -93,7 +93,7 @@ def test_unknown_component_suggests_the_nearest(polyfold):
 
 
 def test_unknown_parameter_suggests_the_nearest(polyfold):
-    result = polyfold(*FOLD, "--set", "simulator.thicknes=0.01")
+    result = polyfold(*FOLD, "--set", "fabric.thicknes=0.01")
     assert result.returncode == 1
     assert "did you mean 'thickness'" in result.stderr
 

@@ -7,9 +7,9 @@ import pytest
 
 from experiments.benchmarks.cloth.measures import crossing_edges, layer_order, strain
 from polyfold import plugins
-from polyfold.errors import ActionError, SimulationError
+from polyfold.config import ComponentSpec
+from polyfold.errors import ActionError, ConfigError, SimulationError
 from polyfold.geometry import FoldLine
-from polyfold.tasks._ideal import LAYER_THICKNESS
 from polyfold.types import Action
 
 SEED = 2002
@@ -18,10 +18,7 @@ EDGE = 0.022
 
 @pytest.fixture(scope="module")
 def garments():
-    return {
-        kind: plugins.create("garments", kind).generate(SEED, EDGE)
-        for kind in ("square", "rectangle", "tshirt", "pants")
-    }
+    return {kind: plugins.generate_garment(kind, SEED, EDGE) for kind in ("square", "rectangle", "tshirt", "pants")}
 
 
 @pytest.fixture
@@ -43,7 +40,7 @@ def half_of_square(simulator) -> Action:
 def test_picture_shows_the_whole_garment_on_a_table_of_another_colour(simulator, garments):
     for garment in garments.values():
         picture = simulator.reset(garment, 3)
-        cloth = picture.depth < picture.camera.elevation - 0.001
+        cloth = picture.depth < picture.camera.elevation - garment.fabric.thickness / 4
         assert picture.rgb.shape == (400, 400, 3)
         assert picture.rgb.dtype == np.uint8
         assert picture.depth.dtype == np.float32
@@ -115,7 +112,7 @@ def test_half_fold_lands_on_the_other_half_without_strain(simulator, garments):
 )
 def test_two_layered_garments_fold_without_piercing_themselves(simulator, kind, picks, places):
     # Fine enough to show a crease: how many edges pierce the other layer depends on the mesh.
-    garment = plugins.create("garments", kind).generate(SEED, 0.0155)
+    garment = plugins.generate_garment(kind, SEED, 0.0155)
     simulator.reset(garment, 1)
     simulator.execute(fold_over(simulator, picks, places))
     positions = simulator.state().positions
@@ -225,5 +222,18 @@ def test_pick_equal_to_place_leaves_the_cloth_flat(simulator, garments):
     assert moved.mean() < 0.005
 
 
-def test_layers_are_as_thick_as_the_ideal_takes_them_to_be():
-    assert plugins.component_class("simulators", "xpbd").Config().thickness == LAYER_THICKNESS
+@pytest.mark.parametrize("fabric", ["jersey", "felt"])
+def test_plies_lie_as_high_as_the_fabric_is_thick(simulator, fabric):
+    shirt = plugins.generate_garment("tshirt", SEED, EDGE, ComponentSpec(name=fabric))
+    simulator.reset(shirt, 0)
+    inner = ~shirt.mesh.seam
+    heights = simulator.state().positions[inner, 2] / shirt.fabric.thickness
+    front = shirt.mesh.layer[inner] == 1
+    assert np.median(heights[~front]) == pytest.approx(0.5, abs=0.1)
+    assert np.median(heights[front]) == pytest.approx(1.5, abs=0.2)
+
+
+def test_what_the_fabric_decides_is_no_parameter_of_the_simulator():
+    for name, says in (("thickness", "use fabric.thickness"), ("bending_length", "fabric.bending_length_warp")):
+        with pytest.raises(ConfigError, match=says):
+            plugins.create("simulators", "xpbd", {name: 0.002})
