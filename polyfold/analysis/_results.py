@@ -109,6 +109,7 @@ def _row(record: StudyEpisodeRecord) -> dict[str, Any]:
         "garment": record.garment.kind,
         "garment_seed": record.garment.seed,
         "size_m": record.garment.size_m,
+        "fabric": None if record.garment.fabric is None else record.garment.fabric.name,
         "wording": record.wording,
         "instruction": record.instruction,
         "folds": record.folds,

@@ -8,7 +8,7 @@ from pathlib import Path
 import polyfold
 from polyfold.studies import Study
 from polyfold.studies._cell import PICTURES
-from polyfold.studies._study import with_variants
+from polyfold.studies._study import made_of, with_variants
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -30,6 +30,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="go on with a run although code, prompts or weights have changed since; the run records it",
     )
     parser.add_argument("--garments", type=_at_least_one, metavar="N", help="garments per kind instead of the study's")
+    parser.add_argument("--fabric", metavar="NAME", help="what garments are made of where the variant names none")
     parser.add_argument("--variants", nargs="+", metavar="NAME", help="only these of the study's variants")
 
 
@@ -38,6 +39,8 @@ def run(arguments: argparse.Namespace) -> int:
     study = polyfold.load(arguments.config)
     if arguments.garments is not None:
         study = Study(**{**study.model_dump(), "garments": arguments.garments})
+    if arguments.fabric is not None:
+        study = made_of(study, arguments.fabric)
     if arguments.variants is not None:
         study = with_variants(study, arguments.variants)
     try:

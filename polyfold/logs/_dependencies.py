@@ -14,6 +14,7 @@ from polyfold.logs._components import components_in_use
 from polyfold.logs._fingerprint import UNREADABLE, Fingerprint
 from polyfold.logs._sources import digest_of, digest_of_file, git_states, source_of
 from polyfold.plugins import hookspecs
+from polyfold.plugins._fabrics import chosen_fabric
 from polyfold.plugins._inspection import files_read, prompts_read
 from polyfold.prompts import load_prompt
 
@@ -43,14 +44,18 @@ def fingerprint(
 
     Args:
         experiments: what will run; components that they name but do not use count for nothing.
-        also: further components, as (kind, name), for example ``("metrics", "mppe")``.
+        also: further components, as (kind, name), for example ``("metrics", "mppe")``; the fabrics of kinds of garment
+            among them count too.
         commits: whether to ask git for the state of checkouts; :meth:`Fingerprint.digest` needs none.
 
     Raises:
         PluginError: if a component is not installed.
     """
+    experiments, also = list(experiments), list(also)
     specs = [spec for experiment in experiments for spec in _specs(experiment)]
     specs += [(kind, ComponentSpec(name=name)) for kind, name in also]
+    garments = [name for kind, name in also if kind == "garments"]
+    specs += [("fabrics", chosen_fabric(each.fabric, garment)) for each in experiments for garment in garments]
     core = Path(__file__).parents[1]
     distributions, prompts, files = _libraries(), {}, {}
     sources = {f"polyfold.{name.removesuffix('.py')}": digest_of(core / name) for name in CORE}

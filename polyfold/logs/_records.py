@@ -89,6 +89,18 @@ class FidelityRecord(LogRecord):
     reference: str
 
 
+class FabricRecord(LogRecord):
+    """What a garment was made of.
+
+    Attributes:
+        name: of the fabric.
+        constants: by name, in SI units; see :class:`polyfold.garments.Fabric`.
+    """
+
+    name: str
+    constants: dict[str, float]
+
+
 class GarmentRecord(LogRecord):
     """What lay on the table.
 
@@ -98,6 +110,7 @@ class GarmentRecord(LogRecord):
         seed: what it was generated from; None for meshes and twins of real garments.
         size_m: longest side of the flat garment's bounding box [m].
         particles: vertices of its mesh.
+        fabric: what it was made of; None in logs from before garments had one.
     """
 
     kind: str
@@ -105,6 +118,7 @@ class GarmentRecord(LogRecord):
     seed: int | None
     size_m: float | None
     particles: int | None
+    fabric: FabricRecord | None = None
 
 
 class EpisodeRecord(LogRecord):

@@ -17,6 +17,7 @@ from polyfold.logs._dependencies import fingerprint
 from polyfold.logs._host import processor, this_host
 from polyfold.logs._records import (
     CallRecord,
+    FabricRecord,
     FidelityRecord,
     FoldLineRecord,
     FoldRecord,
@@ -114,6 +115,7 @@ def _garment(garment: Garment) -> GarmentRecord:
         seed=garment.seed,
         size_m=round(float(np.ptp(corners, axis=0).max()), 4),
         particles=len(corners),
+        fabric=FabricRecord(name=garment.fabric.name, constants=garment.fabric.constants()),
     )
 
 

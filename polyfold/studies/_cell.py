@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold import plugins
+from polyfold.config import Experiment
 from polyfold.errors import ActionError, GroundingError, PlanError, SimulationError
 from polyfold.evaluation import suite
 from polyfold.evaluation._attribution import attribute, attribute_open
@@ -110,15 +111,21 @@ class _Idle:
         return None
 
 
+def _garment(study: Study, cell: Cell, experiment: Experiment) -> Garment:
+    """The garment of an episode; variants that differ in the fabric alone share the mesh."""
+    cut = _cut(cell.garment, cell.garment_seed, study.edge_length)
+    return replace(cut, fabric=plugins.make_fabric(experiment.fabric, cell.garment))
+
+
 @lru_cache(maxsize=8)
-def _garment(kind: str, seed: int, edge_length: float) -> Garment:
-    return plugins.create("garments", kind).generate(seed, edge_length)
+def _cut(kind: str, seed: int, edge_length: float) -> Garment:
+    return plugins.generate_garment(kind, seed, edge_length)
 
 
 def _run(study: Study, cell: Cell, entry: Task | OpenTask, accepted: Sequence[Task]) -> Episode:
     """The episode; guidance, for agents that need it, is made from the first accepted task."""
-    garment = _garment(cell.garment, cell.garment_seed, study.edge_length)
     experiment = experiment_of(study, cell.variant)
+    garment = _garment(study, cell, experiment)
     instruction = entry.instructions[cell.wording] if entry.instructions else ""
     agent = build_agent(experiment)
     if accepted or not agent.requires & GUIDED:

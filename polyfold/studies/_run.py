@@ -55,15 +55,16 @@ def evaluate(
     if workers < 1:
         raise ConfigError(f"there are no {workers} workers; give 1 or more")
     wanted = list(cells(study))
+    kinds = sorted({cell.garment for cell in wanted})
     bounds = criteria(study.criteria)
     run = RunDirectory(
         out,
         {"study": study.model_dump(mode="json")},
         StudyEpisodeRecord,
-        study_fingerprint(study, {cell.garment for cell in wanted}),
+        study_fingerprint(study, kinds),
         metric_records(bounds[study.criteria[0]]),
         bounds,
-        {variant: components_in_use(experiment_of(study, variant)) for variant in study.variants},
+        {variant: components_in_use(experiment_of(study, variant), kinds) for variant in study.variants},
     )
     done = {key: record for key, record in run.records().items() if not record.unanswered}
     missing = [cell for cell in wanted if cell.key not in done]

@@ -15,10 +15,11 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment, read_toml
 from polyfold.errors import ConfigError, did_you_mean, validation_problem
 from polyfold.plugins import hookspecs
-from polyfold.plugins._inspection import parameter_names
+from polyfold.plugins._inspection import moved_parameter, parameter_names
 
 Overrides = dict[str, Any]
 
@@ -87,7 +88,7 @@ def ablate(base: Study, path: str, values: Sequence[Any], names: Sequence[str] |
 
     Args:
         base: the study to vary; its first variant is what the others differ from.
-        path: dotted path of the setting: ``"policy"``, ``"simulator.thickness"``.
+        path: dotted path of the setting: ``"policy"``, ``"fabric"``, ``"fabric.thickness"``.
         values: its values.
         names: names of the variants; by default the values.
     """
@@ -110,6 +111,18 @@ def grid(base: Study, settings: dict[str, Sequence[Any]], names: Sequence[str] |
     for variant in variants:
         experiment_of(study, variant)
     return study
+
+
+def made_of(study: Study, fabric: str) -> Study:
+    """The study with its garments made of a fabric; constants that it gives and variants that name one stay.
+
+    Raises:
+        PluginError: if there is no such fabric.
+    """
+    plugins.find("fabrics", fabric)
+    constants = {path: value for path, value in _flat(study.base).items() if path.startswith("fabric.")}
+    others = {path: value for path, value in study.base.items() if path.partition(".")[0] != "fabric"}
+    return study.model_copy(update={"base": {"fabric": fabric, **others, **constants}})
 
 
 def with_variants(study: Study, names: Sequence[str]) -> Study:
@@ -165,10 +178,12 @@ def _check_parameters(experiment: Experiment, variant: str) -> None:
         spec = getattr(experiment, field)
         if not isinstance(spec, ComponentSpec):
             continue
-        known = parameter_names(hookspecs.plural(field), spec) if spec.params else ()
+        kind = hookspecs.plural(field)
+        known = parameter_names(kind, spec) if spec.params else ()
         for parameter in spec.params:
             if parameter not in known:
+                nearest = did_you_mean(f"{field}.{parameter}", [f"{field}.{name}" for name in known])
                 raise ConfigError(
                     f"variant {variant!r} sets '{field}.{parameter}', which {spec.name!r} does not have; "
-                    + did_you_mean(f"{field}.{parameter}", [f"{field}.{name}" for name in known])
+                    + (moved_parameter(kind, spec, parameter) or nearest)
                 )

@@ -184,5 +184,7 @@ def test_a_run_says_what_was_asked_with_all_defaults(my_plugin, study, tmp_path)
     used = run.components["polyfold"]
     assert used["policy"].name == "shifted"
     assert "gamma" in used["policy"].params
-    assert used["simulator"].params["thickness"] > 0
+    assert used["simulator"].params["order"] == 1
+    assert used["fabric of square"].name == "poplin"
+    assert used["fabric of square"].params["thickness"] > 0
     assert used["planner"].params["subgoals_prompt"] == "mine"

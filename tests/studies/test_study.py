@@ -46,7 +46,8 @@ def test_cells_are_every_combination_once_with_seeds_of_their_own():
     [
         ("polcy", "sets 'polcy'; did you mean 'policy'"),
         ("policy.gama", "did you mean 'policy.gamma'"),
-        ("simulator.thicknes", "did you mean 'simulator.thickness'"),
+        ("fabric.thicknes", "did you mean 'fabric.thickness'"),
+        ("simulator.thickness", "use fabric.thickness instead"),
     ],
 )
 def test_a_mistyped_override_names_the_path_and_the_nearest_right_one(path, says):
