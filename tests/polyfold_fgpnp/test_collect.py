@@ -273,9 +273,9 @@ def test_what_folds_and_what_sees_can_be_chosen(tmp_path):
     few = {"mix": {"uniform": 1}, "edge_length": 0.05}
     plain = collect(interaction(**few), 4, tmp_path / "plain", progress=False)
     assert plain["parameters"]["simulator"]["name"] == "xpbd"
-    slippery = {"name": "xpbd", "table_friction": 0.0}
-    other = collect(interaction(**few, simulator=slippery), 4, tmp_path / "slippery", progress=False)
-    assert other["parameters"]["simulator"] == {"name": "xpbd", "params": {"table_friction": 0.0}}
+    slippery = {"name": "denim", "table_friction": 0.0}
+    other = collect(interaction(**few, fabric=slippery), 4, tmp_path / "slippery", progress=False)
+    assert other["parameters"]["fabric"] == {"name": "denim", "params": {"table_friction": 0.0}}
     assert other["hash"] != plain["hash"]
     with pytest.raises(ConfigError, match="did you mean 'threshold'"):
         collect(interaction(segmenter={"name": "colour", "treshold": 3}), 4, tmp_path / "wrong", progress=False)

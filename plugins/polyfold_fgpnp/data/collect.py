@@ -29,6 +29,9 @@ class Collect:
         )
         parser.add_argument("--kind", default="tshirt", help="of the garments (default: tshirt)")
         parser.add_argument("--simulator", default="xpbd", metavar="NAME", help="default: xpbd")
+        parser.add_argument(
+            "--fabric", default="usual", metavar="NAME", help="default: usual, what the kind usually is"
+        )
         parser.add_argument("--segmenter", default="colour", metavar="NAME", help="default: colour")
         parser.add_argument("--seeds", default="1000-1099", metavar="A-B", help="garment seeds (default: 1000-1099)")
         parser.add_argument(
@@ -76,7 +79,7 @@ def collect(
         progress: show a progress bar.
 
     Raises:
-        PluginError: if there is no such kind of garment, simulator or segmenter.
+        PluginError: if there is no such kind of garment, fabric, simulator or segmenter.
         ConfigError: if the folder holds a data set with other parameters or changed shards, the weights do not serve,
             or not even one fold or process is asked for.
     """
@@ -111,6 +114,7 @@ def _interaction(arguments: argparse.Namespace) -> Interaction:
         return Interaction(
             garment_kind=arguments.kind,
             simulator=arguments.simulator,
+            fabric=arguments.fabric,
             segmenter=arguments.segmenter,
             seeds=_seeds(arguments.seeds),
             edge_length=arguments.edge_length,

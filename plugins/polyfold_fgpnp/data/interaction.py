@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from polyfold import plugins
-from polyfold.config import ComponentSpec
+from polyfold.config import ComponentSpec, Experiment
 from polyfold.errors import ConfigError, GroundingError, PlanError, SimulationError
 from polyfold.garments import Garment
 from polyfold.geometry import FoldLine, contour_of
@@ -55,6 +55,7 @@ class Interaction(BaseModel):
     edge_length: float = Field(default=0.018, gt=0.005, le=0.05, description="edge length of the mesh [m]")
     mix: Mapping[str, int] = Field(default_factory=lambda: dict(MIX), description="trials of each recipe from a state")
     simulator: ComponentSpec = Field(default=ComponentSpec(name="xpbd"), description="what folds, with its parameters")
+    fabric: ComponentSpec = Field(default=Experiment().fabric, description="what the garments are made of")
     segmenter: ComponentSpec = Field(default=ComponentSpec(name="colour"), description="what tells cloth from table")
     seed: int = Field(default=0, ge=0, description="of everything random")
     weights: Path | None = Field(default=None, exclude=True, description="file of the network that chosen picks ask")
@@ -106,10 +107,15 @@ class Situation:
         return self.line.region
 
 
+def _garment(interaction: Interaction, seed: int) -> Garment:
+    cut = _cut(interaction.garment_kind, seed, interaction.edge_length)
+    return replace(cut, fabric=plugins.make_fabric(interaction.fabric, interaction.garment_kind))
+
+
 @lru_cache(maxsize=2)
-def _garment(kind: str, seed: int, edge_length: float) -> Garment:
+def _cut(kind: str, seed: int, edge_length: float) -> Garment:
     """Kept for the next job on it, whose constraints then need not be made again."""
-    return plugins.create("garments", kind).generate(seed, edge_length)
+    return plugins.generate_garment(kind, seed, edge_length)
 
 
 def check(interaction: Interaction) -> None:
@@ -119,7 +125,7 @@ def check(interaction: Interaction) -> None:
         PluginError: if a component is not there.
         ConfigError: if a parameter of one is wrong, or the weights do not serve.
     """
-    plugins.component_class("garments", interaction.garment_kind)
+    plugins.make_fabric(interaction.fabric, interaction.garment_kind)
     _create_segmenter(interaction)
     _create_simulator(interaction).close()
     value_policy(interaction)
@@ -164,7 +170,7 @@ def situations(interaction: Interaction, job: int) -> Iterator[tuple[Simulator, 
     rng = np.random.default_rng([interaction.seed, job])
     segmenter = _create_segmenter(interaction)
     with closing(_create_simulator(interaction)) as simulator:
-        garment = _garment(kind, garment_seed, interaction.edge_length)
+        garment = _garment(interaction, garment_seed)
         observation = simulator.reset(garment, int(rng.integers(2**31)))
         folds = 0
         for stage, lines in enumerate(LINES_PER_STAGE):

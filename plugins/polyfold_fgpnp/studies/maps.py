@@ -39,6 +39,9 @@ class Maps:
         parser.add_argument("--policy", default="csam+caso", metavar="NAME", help="default: csam+caso")
         parser.add_argument("--weights", default="", metavar="FILE", help="or name, instead of the default")
         parser.add_argument("--task", action="append", metavar="ID", help="first fold of this task; may be repeated")
+        parser.add_argument(
+            "--fabric", default="usual", metavar="NAME", help="default: usual, what each kind usually is"
+        )
         parser.add_argument("--seed", type=int, default=2000, help="of the garments (default: 2000)")
         parser.add_argument("--out", type=Path, default=Path("maps.png"), metavar="PNG", help="default: maps.png")
 
@@ -48,7 +51,8 @@ class Maps:
         weights = {"weights": arguments.weights} if arguments.weights else {}
         policy = plugins.create("policies", arguments.policy, weights)
         arguments.out.parent.mkdir(parents=True, exist_ok=True)
-        action_map_sheet(policy, arguments.task or FOUR_TASKS, arguments.seed, arguments.out)
+        experiment = Experiment.of(fabric=arguments.fabric)
+        action_map_sheet(policy, arguments.task or FOUR_TASKS, arguments.seed, arguments.out, experiment)
         print(f"maps: {arguments.out}")
         return 0
 
@@ -67,7 +71,7 @@ def action_map_sheet(
         tasks: ids of tasks of the installed suites.
         seed: of the garments.
         path: PNG to write.
-        experiment: which simulator, segmenter and grounding; by default those of every experiment.
+        experiment: which fabric, simulator, segmenter and grounding; by default those of every experiment.
 
     Returns:
         The sheet, uint8, shape (H, W, 3).
@@ -97,7 +101,7 @@ def _card(policy: _Mapped, task: Task, seed: int, experiment: Experiment) -> Car
     simulator, segmenter, grounding = (
         plugins.create_chosen(experiment, field) for field in ("simulator", "segmenter", "grounding")
     )
-    picture = simulator.reset(plugins.create("garments", task.garment).generate(seed), seed)
+    picture = simulator.reset(plugins.generate_garment(task.garment, seed, fabric=experiment.fabric), seed)
     before = simulator.state()
     line = fold_lines(task, before.keypoint_pixels())[0]
     template = plugins.create("garments", task.garment).template()
