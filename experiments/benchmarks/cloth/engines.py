@@ -95,7 +95,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "|---|---|---|---|---|---|---|"
     )
     for script in HALVES:
-        garment = plugins.create("garments", script.kind).generate(options.seed, options.edge_length)
+        garment = plugins.generate_garment(script.kind, options.seed, options.edge_length)
         _compare(script, garment, options.seed)
 
 
@@ -209,11 +209,13 @@ def _newton(job: Job) -> tuple[Floats, float]:
             pos=wp.vec3(0.0), rot=wp.quat_identity(), scale=1.0, vel=wp.vec3(0.0),
             vertices=[wp.vec3(*map(float, p)) for p in start],
             indices=job.garment.mesh.triangles.ravel().tolist(),
-            density=0.2, tri_ke=0.0, tri_ka=0.0, tri_kd=0.0, edge_ke=1e-5, edge_kd=0.0,
+            density=job.garment.fabric.weight, tri_ke=0.0, tri_ka=0.0, tri_kd=0.0, edge_ke=1e-5, edge_kd=0.0,
             add_springs=True, spring_ke=1e4, spring_kd=0.0, particle_radius=radius,
         )  # fmt: skip
         model = builder.finalize()
-        model.soft_contact_mu, model.particle_mu, model.particle_max_velocity = 0.8, 0.6, 5.0
+        fabric = job.garment.fabric
+        model.soft_contact_mu, model.particle_mu = fabric.table_friction, fabric.cloth_friction
+        model.particle_max_velocity = 5.0
         # Its constraints are solved all at once, so that stiff springs need strong relaxation.
         solver = newton.solvers.SolverXPBD(model=model, iterations=4, soft_body_relaxation=0.2)
         states = [model.state(), model.state()]
@@ -263,7 +265,8 @@ def _pybullet(job: Job) -> tuple[Floats, float]:
             cloth = bullet.loadSoftBody(
                 str(path), mass=0.1, useMassSpring=1, useBendingSprings=1, useNeoHookean=0,
                 springElasticStiffness=40, springDampingStiffness=0.1, springBendingStiffness=0.1,
-                frictionCoeff=0.8, useSelfCollision=1, collisionMargin=0.003, useFaceContact=0,
+                frictionCoeff=job.garment.fabric.table_friction,
+                useSelfCollision=1, collisionMargin=0.003, useFaceContact=0,
             )  # fmt: skip
         vertices = _soft_vertices(bullet, cloth)
         # Bullet orders vertices by their first use in a triangle.

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold import plugins
 from polyfold.garments import Garment
 from polyfold.geometry import FoldLine, contour_of
 from polyfold.types import Action, Observation, SimState
 
 Floats = NDArray[np.float64]
-
-CLOTH_HEIGHT = 0.001
-"""What rises above the table by this much [m] is cloth."""
 
 
 @dataclass(frozen=True)
@@ -140,8 +138,8 @@ def mask_of(pixels: Floats, triangles: NDArray[np.int32], size: tuple[int, int])
 
 
 def cloth_mask(observation: Observation) -> NDArray[np.bool_]:
-    """Where the depth picture shows cloth, bool, shape (H, W)."""
-    return observation.depth < observation.camera.elevation - CLOTH_HEIGHT
+    """Where cloth is seen, bool, shape (H, W); by colour, since one thin ply hardly rises above the table."""
+    return plugins.create("segmenters", "colour").segment(observation)
 
 
 def random_action(mask: NDArray[np.bool_], rng: np.random.Generator) -> tuple[Action, FoldLine]:
@@ -180,11 +178,8 @@ def _partner(outline: Floats, first: Floats, line: FoldLine) -> int:
 
 def sized(kind: str, seed: int, particles: int) -> Garment:
     """The seeded garment of a kind, meshed so finely that it has about this many particles."""
-    from polyfold import plugins
-
-    maker = plugins.create("garments", kind)
     edge_length = 0.02
     for _ in range(3):
-        garment = maker.generate(seed, edge_length)
+        garment = plugins.generate_garment(kind, seed, edge_length)
         edge_length *= float(np.sqrt(len(garment.mesh.vertices) / particles))
-    return maker.generate(seed, edge_length)
+    return plugins.generate_garment(kind, seed, edge_length)

@@ -96,7 +96,7 @@ def _random_folds(result: RandomFolds, folds: int, seed: int) -> Iterator[None]:
     simulator = plugins.create("simulators", "xpbd")
     done = 0
     while done < folds:
-        garment = plugins.create("garments", KINDS[seed % 4]).generate(seed, DATA_EDGE)
+        garment = plugins.generate_garment(KINDS[seed % 4], seed, DATA_EDGE)
         picture, rng = simulator.reset(garment, seed), np.random.default_rng(seed)
         for repeat in range(min(1 + (seed // 4) % 3, folds - done)):
             action, line = random_action(cloth_mask(picture), rng)
@@ -177,7 +177,7 @@ def _script_rows(garments: int, seed: int) -> list[Row]:
 def _run(script: Script, seed: int) -> tuple[float, float, float, float]:
     """Overlap, error of moved and of other particles [m] and share of crossing edges after a scripted sequence."""
     simulator = plugins.create("simulators", "xpbd")
-    garment = plugins.create("garments", script.kind).generate(seed, EVALUATION_EDGE)
+    garment = plugins.generate_garment(script.kind, seed, EVALUATION_EDGE)
     picture = simulator.reset(garment, seed)
     trial = Trial(script, simulator.state())
     for fold in script.folds:
@@ -190,7 +190,7 @@ def _run(script: Script, seed: int) -> tuple[float, float, float, float]:
 def _determinism_rows(seed: int) -> list[Row]:
     def final_bytes(script: Script) -> bytes:
         simulator = plugins.create("simulators", "xpbd")
-        garment = plugins.create("garments", script.kind).generate(seed, DATA_EDGE)
+        garment = plugins.generate_garment(script.kind, seed, DATA_EDGE)
         picture = simulator.reset(garment, seed)
         trial = Trial(script, simulator.state())
         for fold in script.folds:

@@ -54,7 +54,7 @@ def measure_flat(kind: str, seeds: Iterable[int], grounding: Grounding) -> list[
     template = garments.template()
     results = []
     for seed in _progress(seeds, f"{kind}, flat"):
-        observation = simulator.reset(garments.generate(seed), seed)
+        observation = simulator.reset(plugins.generate_garment(kind, seed), seed)
         truth = _truth(simulator, template)
         scene, seconds = _timed(grounding, observation, segmenter, template)
         if not results:  # the first call compiles
@@ -73,7 +73,7 @@ def measure_folds(kind: str, seeds: Iterable[int], grounding: Grounding, policy:
     tasks = load_suite(str(plugins.find("tasks", "polyfold70").target)).for_garment(kind)
     results: list[FoldResult] = []
     for number, seed in enumerate(_progress(seeds, f"{kind}, folds")):
-        observation = simulator.reset(garments.generate(seed), seed)
+        observation = simulator.reset(plugins.generate_garment(kind, seed), seed)
         lines = fold_lines(tasks[number % len(tasks)], _pixels(simulator))
         scene, _ = _timed(grounding, observation, segmenter, template)
         for folds, line in enumerate(lines, start=1):
