@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.garments import Mesh
+from polyfold.garments import Fabric, Mesh
 
 GRAVITY = 9.81
+SHARPEST = 0.5
+"""A hinge that is bent by more than this share of what its mesh allows is a crease, however coarse the mesh."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,9 +23,10 @@ class ClothModel:
         rest_lengths: [m], float32, shape (E,).
         hinges: the two ends of an inner edge, then the two opposite corners, uint32, shape (H, 4).
         hinge_weights: curvature stencil times the square root of stiffness per mass [1/s], float32, shape (H, 4).
+        elastic: length of the stencil [m/s] up to which a hinge bends elastically, float32, shape (H,).
         normal_corners: corners whose normal a triangle contributes to, uint32, shape (T, 3) (see ``normal_use``).
         normal_use: 1 where the corner takes its normal from that triangle, float32, shape (T, 3).
-        excluded_start, excluded: vertices never in contact with vertex i: ``excluded[start[i]:start[i + 1]]``.
+        panel: panel of each triangle, int32, shape (T,).
         edge_length: mean rest length [m].
     """
 
@@ -31,33 +34,32 @@ class ClothModel:
     rest_lengths: NDArray[np.float32]
     hinges: NDArray[np.uint32]
     hinge_weights: NDArray[np.float32]
+    elastic: NDArray[np.float32]
     normal_corners: NDArray[np.uint32]
     normal_use: NDArray[np.float32]
-    excluded_start: NDArray[np.uint32]
-    excluded: NDArray[np.uint32]
+    panel: NDArray[np.int32]
     edge_length: float
 
 
-def build_model(mesh: Mesh, bending_length: float) -> ClothModel:
-    """Constraints of a mesh; ``bending_length`` is Peirce's [m]: stiffness per weight is its third power."""
+def build_model(mesh: Mesh, fabric: Fabric) -> ClothModel:
+    """Constraints of a mesh of this fabric."""
     triangles = np.asarray(mesh.triangles, np.int64)
     rest = np.asarray(mesh.vertices, float)[:, :2]
     edges = _unique_edges(triangles)
     lengths = np.linalg.norm(rest[edges[:, 0]] - rest[edges[:, 1]], axis=1)
     order = _colour_order(edges, len(rest))
     edges, lengths = edges[order], lengths[order]
-    hinges, weights = _hinges(mesh, triangles, rest, bending_length)
-    start, excluded = _exclusions(mesh, edges, rest, float(lengths.mean()))
+    hinges, weights, elastic = _hinges(mesh, triangles, rest, fabric)
     from_back = np.asarray(mesh.seam)[triangles] & (np.asarray(mesh.panel)[:, None] == 0)
     return ClothModel(
         edges.astype(np.uint32),
         lengths.astype(np.float32),
         hinges.astype(np.uint32),
         weights.astype(np.float32),
+        elastic.astype(np.float32),
         triangles.astype(np.uint32),
         np.where(from_back, 0.0, 1.0).astype(np.float32),
-        start.astype(np.uint32),
-        excluded.astype(np.uint32),
+        np.asarray(mesh.panel, np.int32),
         float(lengths.mean()),
     )
 
@@ -81,8 +83,8 @@ def _colour_order(edges: NDArray[np.int64], count: int) -> NDArray[np.int64]:
 
 
 def _hinges(
-    mesh: Mesh, triangles: NDArray[np.int64], rest: NDArray[np.float64], bending_length: float
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    mesh: Mesh, triangles: NDArray[np.int64], rest: NDArray[np.float64], fabric: Fabric
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     """Isometric bending (Bergou et al. 2006) over every inner edge of a panel; seams bend freely."""
     corners: dict[tuple[int, int, int], list[int]] = {}
     for (a, b, c), panel in zip(triangles.tolist(), np.asarray(mesh.panel).tolist(), strict=True):
@@ -104,20 +106,22 @@ def _hinges(
     stencil = np.stack([c03 + c04, c01 + c02, -c01 - c03, -c02 - c04], axis=1)
     sheet = area(rest[triangles[:, 0]], rest[triangles[:, 1]], rest[triangles[:, 2]]).sum()
     area_per_particle = sheet / len(rest)
-    stiffness = 3.0 / (area(x0, x1, x2) + area(x0, x1, x3)) * GRAVITY * bending_length**3 / area_per_particle
-    return hinges, stencil * np.sqrt(stiffness)[:, None]
+    around = area(x0, x1, x2) + area(x0, x1, x3)
+    rigidity = _rigidity(x1 - x0, fabric)
+    root = np.sqrt(1.0 / around * rigidity / area_per_particle)
+    # Bent to a curvature, a stencil is as long as the curvature times the area of its two triangles.
+    sharpest = 2.0 * np.hypot(*(x1 - x0).T) / around
+    elastic = np.minimum(fabric.crease_yield, SHARPEST * sharpest) * around * root
+    return hinges, stencil * root[:, None], elastic
 
 
-def _exclusions(
-    mesh: Mesh, edges: NDArray[np.int64], rest: NDArray[np.float64], edge_length: float
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Neighbours along edges, and neighbours in the sheet that the mesh puts closer than a contact disc."""
-    from scipy.spatial import KDTree
+def _rigidity(along: NDArray[np.float64], fabric: Fabric) -> NDArray[np.float64]:
+    """Bending rigidity per weight times gravity [m⁴/s²] of hinges that run ``along``, shape (H, 2): g times c³.
 
-    close = KDTree(rest).query_pairs(0.95 * edge_length, output_type="ndarray").astype(np.int64)
-    layer, seam = np.asarray(mesh.layer), np.asarray(mesh.seam)
-    same_sheet = (layer[close[:, 0]] == layer[close[:, 1]]) | seam[close[:, 0]] | seam[close[:, 1]]
-    pairs = np.concatenate([edges, close[same_sheet]])
-    both = np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
-    start = np.searchsorted(both[:, 0], np.arange(len(rest) + 1))
-    return start, both[:, 1]
+    A hinge bends the sheet across itself. In a mesh of even triangles, hinges of three directions share every bend;
+    with these weights, strips along warp and weft get their own bending lengths.
+    """
+    warp, weft = GRAVITY * fabric.bending_length_warp**3, GRAVITY * fabric.bending_length_weft**3
+    across = along[:, 0] ** 2 / (along**2).sum(axis=1)
+    lean = 2.0 * across - 1.0
+    return np.maximum((warp + weft) / 2 + 0.75 * (warp - weft) * lean, 0.1 * min(warp, weft))

@@ -128,7 +128,7 @@ class XpbdSimulator:
     def state(self) -> SimState:
         """Privileged state: particles, keypoints and the contact memory that :meth:`restore` needs."""
         solver, _ = self._ready()
-        extra: dict[str, Any] = {**solver.contact_memory(), "actions": tuple(self._actions)}
+        extra: dict[str, Any] = {**solver.memory(), "actions": tuple(self._actions)}
         positions, velocities = solver.positions()[self._rank], solver.velocities()[self._rank]
         return SimState(positions, velocities, self._keypoints, self._camera, extra)
 

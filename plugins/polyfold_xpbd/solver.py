@@ -18,19 +18,15 @@ from polyfold_xpbd.kernels.vectors import vertex_normals
 from polyfold_xpbd.model import ClothModel, build_model
 from polyfold_xpbd.tethers import TetherMap
 
-DISC_RADIUS = 0.7
-"""Radius of a contact disc in edge lengths; above 0.58 discs leave no gap in an even mesh."""
-PAD = 0.25
-"""How far ahead the list of near pairs looks, in edge lengths."""
+SLACK = 0.002
+"""How far particles may stray from where they were foreseen before near pairs are listed again [m]."""
 PAIRS_PER_PARTICLE = 64
-"""Room in the list of near pairs. Flat stacks have about 10 however high they are; more than this is a blow-up."""
-RELAXATION, LARGEST_PUSH = 0.3, 0.2
-"""Share of an overlap resolved per substep, and the most of it in thicknesses."""
-RECOVERY = 0.1
-"""Speed at which overlapping layers come apart [m/s]."""
+"""Room in the list of near pairs. Flat stacks have about 8 however high they are; more than this is a blow-up."""
+RECOVERY = 0.01
+"""Speed at which overlapping plies come apart [m/s]."""
 TOP_SPEED = 5.0
 """Particles are never faster than this [m/s]."""
-MOVING, SETTLING = 8.0, 20.0
+MOVING, SETTLING = 8.0, 60.0
 """Velocity damping while a gripper moves and while the cloth comes to rest [1/s]."""
 REST_SPEED, LONGEST_SETTLING = 0.003, 1.5
 """RMS speed that counts as rest [m/s], and how long to wait for it [s]."""
@@ -38,13 +34,13 @@ REST_SPEED, LONGEST_SETTLING = 0.003, 1.5
 
 def time_step(edge_length: float) -> float:
     """Substep [s] that a mesh of this edge length [m] needs."""
-    return 1 / 900 if edge_length < 0.0128 else 1 / 600
+    return 1 / 750 if edge_length < 0.0128 else 1 / 600
 
 
 @lru_cache(maxsize=4)
-def _constraints(mesh: Mesh, bending_length: float) -> tuple[ClothModel, TetherMap]:
+def _constraints(mesh: Mesh, fabric: Fabric) -> tuple[ClothModel, TetherMap]:
     """What a mesh is held together by; studies lay the same few garments again and again."""
-    return build_model(mesh, bending_length), TetherMap(mesh)
+    return build_model(mesh, fabric), TetherMap(mesh)
 
 
 class Solver:
@@ -52,16 +48,14 @@ class Solver:
 
     def __init__(self, mesh: Mesh, flat: NDArray[np.float64], fabric: Fabric) -> None:
         count = len(flat)
-        self._model, self._tethers = _constraints(mesh, fabric.bending_length)
+        self._model, self._tethers = _constraints(mesh, fabric)
         self._thickness = fabric.thickness
         edge_length = self._model.edge_length
         self.dt = time_step(edge_length)
-        radius = DISC_RADIUS * edge_length
         self._settings = np.array(
             [
-                self.dt, radius, fabric.thickness, PAD * edge_length, fabric.table_friction, fabric.cloth_friction,
-                RELAXATION, LARGEST_PUSH * fabric.thickness, fabric.thickness / 2, TOP_SPEED,
-                RECOVERY * self.dt,
+                self.dt, fabric.thickness, SLACK, edge_length, fabric.table_friction, fabric.cloth_friction,
+                RECOVERY * self.dt, TOP_SPEED, fabric.crease_set,
             ],
             np.float32,
         )  # fmt: skip
@@ -70,16 +64,26 @@ class Solver:
         self.x[:, 2] = fabric.thickness / 2 + fabric.thickness * mesh.layer
         self.x[mesh.seam, 2] = fabric.thickness
         self.v = np.zeros((count, 3), np.float32)
-        self._previous, self._listed = self.x.copy(), self.x.copy()
+        self._previous, self._listed, self._foreseen = self.x.copy(), self.x.copy(), self.v.copy()
+        self._rested = self.x.copy()
         self._normals = np.zeros((count, 3), np.float32)
         self._mobility = np.ones(count, np.float32)
-        self._start, self._old_start = np.zeros(count + 1, np.int32), np.zeros(count + 1, np.int32)
-        capacity = PAIRS_PER_PARTICLE * count
-        self._second, self._old_second = np.zeros(capacity, np.uint32), np.zeros(capacity, np.uint32)
-        self._side, self._old_side = np.zeros((capacity, 2), np.int8), np.zeros((capacity, 2), np.int8)
-        self._pair_normal = np.zeros((capacity, 3), np.float32)
-        self._clock = np.zeros(3, np.int64)
-        self._supported, self._rests = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
+        edges, hinges = len(self._model.edges), len(self._model.hinges)
+        self._sharp = np.zeros(edges, np.bool_)
+        self._vertex_range = np.zeros(count, np.int32), np.zeros(count, np.int32)
+        self._edge_range = np.zeros(edges, np.int32), np.zeros(edges, np.int32)
+        room = PAIRS_PER_PARTICLE * count
+        self._first = np.zeros(room, np.int32)
+        self._pairs, self._old_pairs = _pair_memory(room), _pair_memory(room)
+        self._contacts = (
+            np.zeros((room, 4), np.int32), np.zeros((room, 4), np.float32),
+            np.zeros((room, 4), np.float32), np.zeros((room, 3), np.float32),
+            np.zeros(room, np.float32), np.zeros(room, np.int32),
+        )  # fmt: skip
+        self._table_load = np.zeros((count, 3), np.float32)
+        self._set = np.zeros(hinges, np.float32)
+        self._rest = np.zeros((hinges, 3), np.float32)
+        self._clock = np.zeros(6, np.int64)
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
@@ -99,17 +103,24 @@ class Solver:
         vertex_normals(self.x, self._model.normal_corners, self._model.normal_use, self._normals)
         return self._normals
 
-    def contact_memory(self) -> dict[str, NDArray[Any]]:
-        """On which side of each other near particles belong.
+    def memory(self) -> dict[str, NDArray[Any]]:
+        """What the cloth remembers beside where it is: contacts with their sides, and creases.
 
-        Those near particle i are ``pair_second[pair_start[i]:pair_start[i + 1]]``, shapes (P,) and (N + 1,);
-        ``pair_side``, shape (P, 2), says on which side of i they are, and i of them: -1, 0 (not known yet) or 1.
+        Pair k is of ``pair_first[k]`` and ``pair_second[k]``, shape (P,); the first ``pair_kinds[0]`` are of a vertex
+        and a triangle, the others of two edges; ``pair_side[k]`` says on which side of each other they are, and
+        ``pair_over[k]`` whether they were over each other. ``crease`` and ``crease_rest``, shapes (H,) and (H, 3), are
+        the set curvatures of the hinges.
         """
-        count = self._start[-1]
+        vertex_pairs, pairs = int(self._clock[3]), int(self._clock[4])
+        second, side, over, _ = self._pairs
         return {
-            "pair_start": self._start.copy(),
-            "pair_second": self._second[:count].copy(),
-            "pair_side": self._side[:count].copy(),
+            "pair_kinds": np.array([vertex_pairs, pairs - vertex_pairs]),
+            "pair_first": self._first[:pairs].copy(),
+            "pair_second": second[:pairs].copy(),
+            "pair_side": side[:pairs].copy(),
+            "pair_over": over[:pairs].copy(),
+            "crease": self._set.copy(),
+            "crease_rest": self._rest.copy(),
         }
 
     def set_state(
@@ -120,15 +131,29 @@ class Solver:
         Args:
             positions: of the particles [m], shape (N, 3).
             velocities: of the particles [m/s], shape (N, 3).
-            memory: what :meth:`contact_memory` gave then; without it, sides are taken from the geometry.
+            memory: what :meth:`memory` gave then; without it, sides are taken from the geometry and creases forgotten.
         """
         self.x[:] = positions
         self.v[:] = velocities
-        self._start[:] = memory.get("pair_start", 0)
-        count = int(self._start[-1])
-        self._second[:count] = memory.get("pair_second", 0)
-        self._side[:count] = memory.get("pair_side", 0)
+        vertex_pairs, edge_pairs = (int(n) for n in memory.get("pair_kinds", (0, 0)))
+        pairs = vertex_pairs + edge_pairs
+        second, side, over, _ = self._pairs
+        self._first[:pairs] = memory.get("pair_first", 0)
+        second[:pairs] = memory.get("pair_second", 0)
+        side[:pairs], over[:pairs] = memory.get("pair_side", 0), memory.get("pair_over", 0)
+        for (starts, stops), begin, end in (
+            (self._vertex_range, 0, vertex_pairs), (self._edge_range, vertex_pairs, pairs),
+        ):  # fmt: skip
+            starts[:], stops[:] = 0, 0
+            owners, at, counts = np.unique(self._first[begin:end], return_index=True, return_counts=True)
+            starts[owners], stops[owners] = begin + at, begin + at + counts
+        self._clock[3], self._clock[4] = vertex_pairs, pairs
+        self._set[:], self._rest[:] = memory.get("crease", 0.0), memory.get("crease_rest", 0.0)
         self._mobility[:] = 1.0
+
+    def pin(self, particles: NDArray[np.int64]) -> None:
+        """Hold particles, indices of shape (K,), where they are until another state is set."""
+        self._mobility[particles] = 0.0
 
     def fold(self, action: Action, camera: Camera, on_frame: Callable[[], None] | None, interval: float) -> bool:
         """Move what the picks hold to the places and let it come to rest. False if it diverged."""
@@ -164,8 +189,9 @@ class Solver:
         on_frame: Callable[[], None] | None,
         interval: float,
     ) -> bool:
-        # A fresh list and clock make a stage depend on the saved state alone, so that restore() repeats exactly.
-        self._clock[:], self._supported[:], self._rests[:] = 0, False, False
+        # A fresh list and no loads make a stage depend on the saved state alone, so that restore() repeats exactly.
+        self._clock[:3] = 0, 0, -1
+        self._pairs[3][: self._clock[4]], self._table_load[:] = 0.0, 0.0
         chunk = substeps if on_frame is None else max(1, round(interval / self.dt))
         done = 0
         while done < substeps:
@@ -183,12 +209,17 @@ class Solver:
     ) -> tuple[int, int]:
         model = self._model
         return advance(
-            self.x, self.v, self._previous, self._listed, self._mobility, self._normals, model.edges,
-            model.rest_lengths, model.hinges, model.hinge_weights, model.normal_corners, model.normal_use,
-            model.excluded_start, model.excluded, self._start, self._second, self._side, self._pair_normal,
-            self._old_start, self._old_second, self._old_side, self._clock, self._supported, self._rests, *held,
+            self.x, self.v, self._previous, self._mobility, self._normals, model.edges, model.rest_lengths,
+            model.hinges, model.hinge_weights, model.elastic, self._set, self._rest, model.normal_corners, model.panel,
+            model.normal_use, self._clock, self._listed, self._foreseen, self._rested, self._sharp, *self._vertex_range,
+            *self._edge_range, self._first, *self._pairs, *self._old_pairs, *self._contacts, self._table_load, *held,
             first, last, self._settings, np.float32(damping), np.float32(rest_speed),
         )  # fmt: skip
+
+
+def _pair_memory(room: int) -> tuple[NDArray[Any], ...]:
+    """Second members, sides, whether one is over the other, and loads of pairs."""
+    return np.zeros(room, np.int32), np.zeros(room, np.int8), np.zeros(room, np.int8), np.zeros((room, 4), np.float32)
 
 
 _EMPTY = (

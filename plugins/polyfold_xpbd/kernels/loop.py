@@ -9,19 +9,21 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from polyfold_xpbd.kernels.contact import resolve_pairs, table
-from polyfold_xpbd.kernels.motion import carry, is_finite, predict, velocities
-from polyfold_xpbd.kernels.pairs import mark_moved, pair_normals, update_pairs
-from polyfold_xpbd.kernels.sheet import bend, hold_back, stretch
+from polyfold_xpbd.kernels.contact import find_edge_contacts, find_vertex_contacts, resolve, table, warm_start
+from polyfold_xpbd.kernels.motion import carry, is_finite, predict, strays, velocities
+from polyfold_xpbd.kernels.pairs import list_edge_pairs, list_vertex_pairs, mark_sharp
+from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, stretch
 from polyfold_xpbd.kernels.vectors import vertex_normals
 
 RUNNING, SETTLED, DIVERGED = 0, 1, 2
-LOOK_EVERY = 5
-"""Substeps between looks at who is near whom and which way the sheet faces."""
-LOOK_AFTER = 0.8
-"""Look earlier once the fastest particle may have come this far, in pads."""
-BEND_EVERY = 2
-"""Substeps per bending step: bending is slow against stretching, and stable far beyond this."""
+LOOK_EVERY = 8
+"""Substeps between looks at which listed pairs touch, where and which way."""
+HORIZON = 16
+"""Substeps for which a list of pairs looks ahead."""
+REST_OVER = 20
+"""Substeps over which the cloth is watched for rest."""
+LEAD = 8.0
+"""How far ahead, in substeps, bending looks along the motion: that damps it."""
 
 
 def _digest() -> str:
@@ -35,66 +37,104 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
 
     @njit(cache=True, error_model="numpy")
     def advance(
-        x, v, previous, listed, mobility, normals, edges, rest_lengths, hinges, hinge_weights, corners, use,
-        excluded_start, excluded, start, pj, side, pair_normal, old_start, old_j, old_side, clock, supported, rests,
-        grasped, offsets, arm, directions, path, angles, tied, anchors, lengths, first, last, settings, damping,
-        rest_speed,
+        x, v, previous, mobility, normals, edges, rest_lengths, hinges, hinge_weights, elastic, set_curvature, rest,
+        corners, panel, use, clock, listed, foreseen, rested, sharp, vertex_starts, vertex_stops, edge_starts,
+        edge_stops, first, second, side, over, load, old_second, old_side, old_over, old_load, bodies, weights,
+        responses, contact_normals, inverse, source, table_load, grasped, offsets, arm, directions, path, angles, tied,
+        anchors, lengths, begin, end, settings, damping, rest_speed,
     ):  # fmt: skip
-        """Run substeps ``first`` to ``last`` in place; stop once slow (``rest_speed`` > 0) for ten substeps.
+        """Run substeps ``begin`` to ``end`` in place; stop once slow (``rest_speed`` > 0) for ten substeps.
 
         Args (beyond the model's arrays and the state's buffers):
-            clock: substeps since the stage began, for how many the cloth has been slow, and how far the fastest
-                particle may have come since the last look [nm], int64, shape (3,).
-            settings: time step [s], radius, thickness and pad [m], friction of table and cloth, relaxation, cap and
-                floor [m], top speed [m/s], recovery [m], float32, shape (11,).
+            clock: substeps since the stage began, for how many the cloth has been slow, substeps since the list of
+                pairs was made, its vertex pairs, all its pairs and the contacts in use, int64, shape (6,).
+            settings: time step [s], thickness, slack and cell [m], friction of table and cloth, recovery [m] and top
+                speed [m/s], share of a crease that stays, float32, shape (9,).
 
         Returns:
             (status, substeps done).
         """
         digest  # noqa: B018  # pyright: ignore[reportUnusedExpression]  (closed over, for numba's key)
-        dt, radius, thickness, pad = settings[0], settings[1], settings[2], settings[3]
-        table_friction, cloth_friction, relaxation, cap = settings[4], settings[5], settings[6], settings[7]
-        floor, fastest = settings[8], settings[9]
+        dt, thickness, slack, cell = settings[0], settings[1], settings[2], settings[3]
+        table_friction, cloth_friction, recovery, fastest = settings[4], settings[5], settings[6], settings[7]
         inverse_dt = np.float32(1.0) / dt
-        moved = np.empty(x.shape[0], np.bool_)
-        for k in range(first, last):
-            if clock[0] % BEND_EVERY == 0:
-                bend(x, v, hinges, hinge_weights, np.float32(BEND_EVERY) * dt)
-            predict(x, v, previous, mobility, dt, damping, fastest)
-            if grasped.shape[0] > 0:
-                carry(x, grasped, offsets, arm, directions, path, angles, k)
-                hold_back(x, mobility, tied, anchors, lengths)
-            stretch(x, mobility, edges, rest_lengths)
-            if clock[0] % LOOK_EVERY == 0 or clock[2] > LOOK_AFTER * pad * 1e9:
-                clock[2] = 0
+        floor = np.float32(0.5) * thickness
+        horizon, window = np.float32(HORIZON) * dt, np.float32(LOOK_EVERY) * dt
+        for k in range(begin, end):
+            bend(x, v, previous, hinges, hinge_weights, rest, np.float32(LEAD) * dt, dt)
+            if (
+                clock[2] < 0
+                or clock[2] >= HORIZON
+                or strays(x, listed, foreseen, np.float32(clock[2]) * dt, np.float32(0.5) * slack)
+            ):
                 if not is_finite(x):
                     return DIVERGED, k
                 vertex_normals(x, corners, use, normals)
-                if mark_moved(x, listed, moved, np.float32(0.3) * pad, clock[0] == 0):
-                    count = start[-1]
-                    old_start[:] = start
-                    old_j[:count] = pj[:count]
-                    old_side[:count, :] = side[:count, :]
-                    found = update_pairs(
-                        x, normals, moved, excluded_start, excluded, radius, thickness, pad,
-                        old_start, old_j, old_side, start, pj, side,
-                    )  # fmt: skip
-                    if found < 0:
-                        return DIVERGED, k
-                pair_normals(normals, start, pj, side, pair_normal)
+                mark_sharp(normals, edges, sharp)
+                count = clock[4]
+                old_second[:count], old_side[:count] = second[:count], side[:count]
+                old_over[:count], old_load[:count] = over[:count], load[:count]
+                clock[3] = list_vertex_pairs(
+                    x, v, horizon, thickness + slack, cell, corners, thickness, vertex_starts, vertex_stops,
+                    old_second, old_side, old_over, old_load, first, second, side, over, load,
+                )  # fmt: skip
+                if clock[3] < 0:
+                    return DIVERGED, k
+                clock[4] = list_edge_pairs(
+                    x, v, horizon, thickness + slack, cell, edges, sharp, edge_starts, edge_stops, clock[3],
+                    old_second, old_side, old_over, old_load, first, second, side, over, load,
+                )  # fmt: skip
+                if clock[4] < 0:
+                    return DIVERGED, k
+                listed[:, :], foreseen[:, :] = x, v
+                clock[2] = 0
+            if clock[2] % LOOK_EVERY == 0:
+                crease(x, hinges, hinge_weights, elastic, settings[8], set_curvature, rest)
+                found = find_vertex_contacts(
+                    x, v, window, mobility, corners, panel, thickness, clock[3], first, second, side, over, load,
+                    bodies, weights, responses, contact_normals, inverse, source,
+                )  # fmt: skip
+                clock[5] = find_edge_contacts(
+                    x, v, window, mobility, edges, thickness, clock[3], clock[4], found, first, second, side, over,
+                    load, bodies, weights, responses, contact_normals, inverse, source,
+                )  # fmt: skip
             clock[0] += 1
-            resolve_pairs(
-                x, previous, mobility, supported, rests, start, pj, pair_normal,
-                radius, thickness, cloth_friction, relaxation, cap, settings[10],
+            clock[2] += 1
+            predict(x, v, previous, mobility, dt, damping, fastest)
+            if grasped.shape[0] > 0:
+                carry(x, grasped, offsets, arm, directions, path, angles, k)
+            warm_start(
+                x,
+                mobility,
+                clock[5],
+                bodies,
+                responses,
+                contact_normals,
+                source,
+                load,
+                table_load,
+                np.float32(9.81) * dt * dt,
+            )
+            if grasped.shape[0] > 0:
+                hold_back(x, mobility, tied, anchors, lengths)
+            stretch(x, mobility, edges, rest_lengths)
+            resolve(
+                x, previous, clock[5], bodies, weights, responses, contact_normals, inverse, source, load, thickness,
+                cloth_friction, recovery,
             )  # fmt: skip
-            table(x, previous, mobility, supported, rests, floor, table_friction)
-            energy, fastest_2 = velocities(x, previous, v, inverse_dt)
-            clock[2] += int(np.sqrt(fastest_2) * dt * np.float32(1e9))
-            if rest_speed > 0:
-                clock[1] = clock[1] + 1 if energy < x.shape[0] * rest_speed * rest_speed else 0
-                if clock[1] >= 10:
+            table(x, previous, mobility, table_load, floor, table_friction)
+            velocities(x, previous, v, inverse_dt)
+            if rest_speed > 0 and clock[0] % REST_OVER == 0:
+                moved = np.float32(0.0)
+                for i in range(x.shape[0]):
+                    for axis in range(3):
+                        way = x[i, axis] - rested[i, axis]
+                        moved += way * way
+                        rested[i, axis] = x[i, axis]
+                limit = np.float32(REST_OVER) * dt * rest_speed
+                if moved < x.shape[0] * limit * limit and clock[0] > REST_OVER:
                     return SETTLED, k + 1
-        return (RUNNING if is_finite(x) else DIVERGED), last
+        return (RUNNING if is_finite(x) else DIVERGED), end
 
     return advance
 

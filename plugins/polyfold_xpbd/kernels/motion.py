@@ -6,6 +6,9 @@ import numpy as np
 
 from polyfold_xpbd.kernels.vectors import careful, compiled
 
+BRAKE = 3.0
+"""Dry friction inside the cloth, as a deceleration [m/s²]: what trembles comes to rest, what moves hardly feels it."""
+
 
 @compiled
 def predict(x, v, previous, mobility, dt, damping, fastest):
@@ -21,11 +24,15 @@ def predict(x, v, previous, mobility, dt, damping, fastest):
     """
     keep = np.float32(1.0) - damping * dt
     fall = np.float32(9.81) * dt
+    brake = np.float32(BRAKE) * dt
     for i in range(x.shape[0]):
         previous[i, 0], previous[i, 1], previous[i, 2] = x[i, 0], x[i, 1], x[i, 2]
         if mobility[i] == np.float32(0.0):
             continue
-        vx, vy, vz = v[i, 0] * keep, v[i, 1] * keep, (v[i, 2] - fall) * keep
+        vx, vy, vz = v[i, 0] * keep, v[i, 1] * keep, v[i, 2] * keep
+        speed = np.sqrt(vx * vx + vy * vy + vz * vz) + np.float32(1e-12)
+        left = max(np.float32(0.0), np.float32(1.0) - brake / speed)
+        vx, vy, vz = vx * left, vy * left, vz * left - fall
         speed_2 = vx * vx + vy * vy + vz * vz
         step = dt
         if speed_2 > fastest * fastest:
@@ -56,18 +63,28 @@ def velocities(x, previous, v, inverse_dt):
     """Velocities [m/s] of a substep into ``v``, shape (N, 3), from positions ``x`` and those ``previous`` to it [m].
 
     Returns:
-        Sum of the squared speeds and the largest squared speed [m²/s²].
+        Sum of the squared speeds [m²/s²].
     """
-    energy, fastest_2 = np.float32(0.0), np.float32(0.0)
+    energy = np.float32(0.0)
     for i in range(x.shape[0]):
         vx = (x[i, 0] - previous[i, 0]) * inverse_dt
         vy = (x[i, 1] - previous[i, 1]) * inverse_dt
         vz = (x[i, 2] - previous[i, 2]) * inverse_dt
         v[i, 0], v[i, 1], v[i, 2] = vx, vy, vz
-        speed_2 = vx * vx + vy * vy + vz * vz
-        energy += speed_2
-        fastest_2 = max(fastest_2, speed_2)
-    return energy, fastest_2
+        energy += vx * vx + vy * vy + vz * vz
+    return energy
+
+
+@compiled
+def strays(x, listed, foreseen, elapsed, limit):
+    """Whether a particle is more than ``limit`` [m] off where it was foreseen ``elapsed`` [s] after ``listed``."""
+    for i in range(x.shape[0]):
+        dx = x[i, 0] - listed[i, 0] - elapsed * foreseen[i, 0]
+        dy = x[i, 1] - listed[i, 1] - elapsed * foreseen[i, 1]
+        dz = x[i, 2] - listed[i, 2] - elapsed * foreseen[i, 2]
+        if dx * dx + dy * dy + dz * dz > limit * limit:
+            return True
+    return False
 
 
 @careful

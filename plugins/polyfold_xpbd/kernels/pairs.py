@@ -1,167 +1,198 @@
-"""Which particles may touch soon, and on which side of each other they belong.
+"""Which vertices and triangles, and which edges, may touch soon, and on which side of each other they belong.
 
-A pair remembers on which side it met, so that a layer pushed through another is pushed back, not out on the wrong side.
+A list holds what comes near within a horizon if everything goes on at its velocity, and lasts until something leaves
+that path by more than the slack: a packet carried through the air needs no new list at every step. A pair remembers on
+which side it met, so that a ply pushed through another is pushed back, not out on the wrong side; a vertex that slides
+from one triangle to the next takes its side along.
+
+A list of pairs is a tuple of arrays with room for ``capacity`` pairs: ``first`` and ``second`` (vertex and triangle, or
+edge and edge), ``side`` (+-1, or 0 if not known), ``over`` (1 if one was over the other when last looked, 2 if only
+before that), and ``load`` (the accumulated push and friction [m], shape (capacity, 4)).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from polyfold_xpbd.kernels.near import ROOM, by_height, gather, sort_by_cell, swept_boxes
 from polyfold_xpbd.kernels.vectors import compiled
 
-CLEAR = 0.5
-"""How far off a sheet something must be to be on one side of it, in thicknesses."""
+BENT, FLAT = 0.95, 0.98
+"""Length of a mean normal below which a sheet counts as bent, and above which it is flat again."""
+CELL = 0.4
+"""Side of a cell that boxes are sorted into, in edge lengths."""
 
 
 @compiled
-def mark_moved(x, listed, moved, limit, everything):
-    """Mark the particles farther than ``limit`` from where they were last listed; whether there are any."""
-    any_moved = False
-    for i in range(x.shape[0]):
-        dx, dy, dz = x[i, 0] - listed[i, 0], x[i, 1] - listed[i, 1], x[i, 2] - listed[i, 2]
-        moved[i] = everything or dx * dx + dy * dy + dz * dz > limit * limit
-        if moved[i]:
-            listed[i, 0], listed[i, 1], listed[i, 2] = x[i, 0], x[i, 1], x[i, 2]
-            any_moved = True
-    return any_moved
+def mark_sharp(normals, edges, sharp):
+    """Mark the edges where the sheet is bent: the mean normal of either end is short.
 
-
-@compiled
-def _side_of(normals, i, dx, dy, dz, d2, radius_2, clear):
-    """On which side of particle i's disc the offset lies (+-1, 0 if that isn't clear), and whether it is over it."""
-    nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
-    along = nx * dx + ny * dy + nz * dz
-    flat_2 = nx * nx + ny * ny + nz * nz + np.float32(1e-12)
-    over = d2 - along * along / flat_2 < radius_2
-    if along > clear:
-        return np.int8(1), over
-    if along < -clear:
-        return np.int8(-1), over
-    return np.int8(0), over
-
-
-@compiled
-def _sort_into_cells(cell_of, cells, wanted):
-    """Members of every cell, in order: those of cell c are ``members[start[c]:start[c + 1]]``."""
-    count = cell_of.shape[0]
-    start = np.zeros(cells + 1, np.int32)
-    for i in range(count):
-        if wanted[i]:
-            start[cell_of[i] + 1] += 1
-    for cell in range(cells):
-        start[cell + 1] += start[cell]
-    fill = start[:-1].copy()
-    members = np.empty(start[cells] + 1, np.uint32)
-    for i in range(count):
-        if wanted[i]:
-            members[fill[cell_of[i]]] = i
-            fill[cell_of[i]] += 1
-    return start, members
-
-
-@compiled
-def _may_touch(x, normals, i, j, excluded_start, excluded, tall):
-    """Whether the pair isn't excluded and is near enough along its common normal."""
-    nx, ny, nz = normals[i, 0], normals[i, 1], normals[i, 2]
-    sign = np.float32(1.0)
-    if nx * normals[j, 0] + ny * normals[j, 1] + nz * normals[j, 2] < 0:
-        sign = np.float32(-1.0)
-    nx, ny, nz = nx + sign * normals[j, 0], ny + sign * normals[j, 1], nz + sign * normals[j, 2]
-    along = nx * (x[j, 0] - x[i, 0]) + ny * (x[j, 1] - x[i, 1]) + nz * (x[j, 2] - x[i, 2])
-    if along * along > tall * tall * (nx * nx + ny * ny + nz * nz):
-        return False
-    touch = True
-    for k in range(excluded_start[i], excluded_start[i + 1]):
-        touch &= excluded[k] != j
-    return touch
-
-
-@compiled
-def update_pairs(
-    x, normals, moved, excluded_start, excluded, radius, thickness, pad, old_start, old_j, old_side, start, pj, side
-):  # fmt: skip
-    """List the pairs that may touch soon, searching only around the particles that ``moved`` since they were listed.
-
-    Pairs are kept by first particle: ``pj[start[i]:start[i + 1]]``. ``side`` holds, for each, the side of i on which
-    j is and the side of j on which i is. A pair of the old list keeps a side while one is still over the other's disc.
-    Returns the number of pairs, or -1 if ``pj`` is too short.
+    An edge stays marked until it is clearly flat again; contacts that came and went would keep creases moving.
     """
-    count = x.shape[0]
-    reach, tall = radius + pad, thickness + pad
-    reach_2, radius_2 = reach * reach, radius * radius
-    inverse_cell = np.float32(1.0) / reach
-    low_x, low_y = x[0, 0], x[0, 1]
-    high_x, high_y = low_x, low_y
-    for i in range(count):
-        low_x, high_x = min(low_x, x[i, 0]), max(high_x, x[i, 0])
-        low_y, high_y = min(low_y, x[i, 1]), max(high_y, x[i, 1])
-    columns = int((high_x - low_x) * inverse_cell) + 3
-    cells = columns * (int((high_y - low_y) * inverse_cell) + 3)
-    cell_of = np.empty(count, np.int32)
-    for i in range(count):
-        cell_of[i] = (int((x[i, 1] - low_y) * inverse_cell) + 1) * columns + int((x[i, 0] - low_x) * inverse_cell) + 1
-    all_start, all_members = _sort_into_cells(cell_of, cells, np.ones(count, np.bool_))
-    moved_start, moved_members = _sort_into_cells(cell_of, cells, moved)
-    near = np.empty(count, np.uint32)
-    # A sheet that is met edge-on has no side yet; guessing one would lock it in.
-    clear = np.float32(CLEAR) * thickness
+    for e in range(edges.shape[0]):
+        a, b = edges[e, 0], edges[e, 1]
+        length_a = normals[a, 0] * normals[a, 0] + normals[a, 1] * normals[a, 1] + normals[a, 2] * normals[a, 2]
+        length_b = normals[b, 0] * normals[b, 0] + normals[b, 1] * normals[b, 1] + normals[b, 2] * normals[b, 2]
+        limit = np.float32(FLAT if sharp[e] else BENT)
+        sharp[e] = min(length_a, length_b) < limit * limit
+
+
+@compiled
+def _frames(x, v, corners, frames):
+    """What tells how a point lies to a triangle, into ``frames``, shape (T, 12).
+
+    Unit normal; the vectors whose products with the way from the first corner are the second and third barycentric
+    coordinates [1/m]; mean velocity [m/s].
+    """
+    third, one = np.float32(1.0 / 3.0), np.float32(1.0)
+    for t in range(corners.shape[0]):
+        a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
+        ux, uy, uz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+        wx, wy, wz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
+        nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
+        inverse = one / np.sqrt(nx * nx + ny * ny + nz * nz + np.float32(1e-20))
+        nx, ny, nz = nx * inverse, ny * inverse, nz * inverse
+        frames[t, 0], frames[t, 1], frames[t, 2] = nx, ny, nz
+        frames[t, 3] = (wy * nz - wz * ny) * inverse
+        frames[t, 4] = (wz * nx - wx * nz) * inverse
+        frames[t, 5] = (wx * ny - wy * nx) * inverse
+        frames[t, 6] = (ny * uz - nz * uy) * inverse
+        frames[t, 7] = (nz * ux - nx * uz) * inverse
+        frames[t, 8] = (nx * uy - ny * ux) * inverse
+        for axis in range(3):
+            frames[t, 9 + axis] = third * (v[a, axis] + v[b, axis] + v[c, axis])
+
+
+@compiled
+def list_vertex_pairs(
+    x, v, horizon, reach, edge_length, corners, thickness,
+    starts, stops, old_second, old_side, old_over, old_load, first, second, side, over, load,
+):  # fmt: skip
+    """List vertices and triangles that come within ``reach`` [m] of each other, from the table upwards.
+
+    Returns:
+        The number of pairs; -1 if there is no room for them.
+    """
+    boxes = swept_boxes(x, v, horizon, corners, reach)
+    cell = np.float32(CELL) * edge_length
+    start, members, in_order, columns, rows, grid = sort_by_cell(boxes, cell)
+    frames = np.empty((corners.shape[0], 12), np.float32)
+    _frames(x, v, corners, frames)
+    one, slope = np.float32(1.0), np.float32(1.3) / edge_length
+    near = np.empty(ROOM, np.int32)
+    box = np.empty(6, np.float32)
+    new_starts, new_stops = np.zeros(x.shape[0], np.int32), np.zeros(x.shape[0], np.int32)
     pairs = 0
-    for i in range(count):
-        start[i] = pairs
-        if pairs + 256 > pj.shape[0]:
+    for i in by_height(x, thickness):
+        new_starts[i] = pairs
+        for axis in range(3):
+            ahead = x[i, axis] + horizon * v[i, axis]
+            box[axis], box[axis + 3] = min(x[i, axis], ahead), max(x[i, axis], ahead)
+        found = gather(box, cell, start, members, in_order, columns, rows, grid, near)
+        if pairs + found > first.shape[0]:
             return -1
-        if not moved[i]:
-            for k in range(old_start[i], old_start[i + 1]):
-                pj[pairs] = old_j[k]
-                side[pairs, 0], side[pairs, 1] = old_side[k, 0], old_side[k, 1]
-                pairs += not moved[old_j[k]]
-        cell_start = all_start if moved[i] else moved_start
-        members = all_members if moved[i] else moved_members
-        found = 0
-        # Without branches: whether a candidate is near can't be predicted, and this loop sees most of the work.
-        for row in range(-1, 2):
-            first = cell_of[i] + row * columns - 1
-            for m in range(cell_start[first], cell_start[first + 3]):
-                j = members[m]
-                dx, dy, dz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
-                near[found] = j
-                found += (j > i) & (dx * dx + dy * dy + dz * dz < reach_2)
-        for n in range(min(found, 256)):
-            j = near[n]
-            if not _may_touch(x, normals, i, j, excluded_start, excluded, tall):
+        for n in range(found):
+            t = near[n]
+            a = corners[t, 0]
+            if i == a or i == corners[t, 1] or i == corners[t, 2]:
                 continue
-            dx, dy, dz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
-            d2 = dx * dx + dy * dy + dz * dz
-            side_i, over_i = _side_of(normals, i, dx, dy, dz, d2, radius_2, clear)
-            side_j, over_j = _side_of(normals, j, -dx, -dy, -dz, d2, radius_2, clear)
-            if over_i or over_j:
-                for k in range(old_start[i], old_start[i + 1]):
-                    if old_j[k] == j:
-                        side_i = old_side[k, 0] if over_i and old_side[k, 0] != 0 else side_i
-                        side_j = old_side[k, 1] if over_j and old_side[k, 1] != 0 else side_j
-                        break
-            pj[pairs] = j
-            side[pairs, 0], side[pairs, 1] = side_i, side_j
+            rx, ry, rz = x[i, 0] - x[a, 0], x[i, 1] - x[a, 1], x[i, 2] - x[a, 2]
+            height = frames[t, 0] * rx + frames[t, 1] * ry + frames[t, 2] * rz
+            mx = horizon * (v[i, 0] - frames[t, 9])
+            my = horizon * (v[i, 1] - frames[t, 10])
+            mz = horizon * (v[i, 2] - frames[t, 11])
+            rise = frames[t, 0] * mx + frames[t, 1] * my + frames[t, 2] * mz
+            if min(height, height + rise) > reach or max(height, height + rise) < -reach:
+                continue
+            beta = frames[t, 3] * rx + frames[t, 4] * ry + frames[t, 5] * rz
+            gamma = frames[t, 6] * rx + frames[t, 7] * ry + frames[t, 8] * rz
+            margin = slope * (reach + np.sqrt(mx * mx + my * my + mz * mz))
+            if min(beta, min(gamma, one - beta - gamma)) < -margin:
+                continue
+            first[pairs], second[pairs], side[pairs], over[pairs] = i, t, np.int8(0), np.int8(0)
+            for m in range(4):
+                load[pairs, m] = np.float32(0.0)
             pairs += 1
-    start[count] = pairs
+        for k in range(starts[i], stops[i]):
+            if old_over[k] != 0:
+                for q in range(new_starts[i], pairs):
+                    if second[q] == old_second[k]:
+                        side[q], over[q] = old_side[k], old_over[k]
+                        for m in range(4):
+                            load[q, m] = old_load[k, m]
+        new_stops[i] = pairs
+    starts[:], stops[:] = new_starts, new_stops
     return pairs
 
 
 @compiled
-def pair_normals(normals, start, pj, side, pair_normal):
-    """Unit direction from the first particle of each pair to the side where the second belongs.
+def _may_meet(x, v, horizon, reach, edge_length, a, b, c, d):
+    """Whether edges a-b and c-d cross within ``reach`` [m] of each other, or may after their travel in the horizon."""
+    one = np.float32(1.0)
+    ux, uy, uz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+    wx, wy, wz = x[d, 0] - x[c, 0], x[d, 1] - x[c, 1], x[d, 2] - x[c, 2]
+    rx, ry, rz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
+    uu, ww, uw = ux * ux + uy * uy + uz * uz, wx * wx + wy * wy + wz * wz, ux * wx + uy * wy + uz * wz
+    ur, wr = ux * rx + uy * ry + uz * rz, wx * rx + wy * ry + wz * rz
+    square = uu * ww - uw * uw
+    if square < np.float32(0.02) * uu * ww:
+        return False
+    s, t = (ur * ww - wr * uw) / square, (ur * uw - wr * uu) / square
+    half = np.float32(0.5) * horizon
+    mx = half * (v[c, 0] + v[d, 0] - v[a, 0] - v[b, 0])
+    my = half * (v[c, 1] + v[d, 1] - v[a, 1] - v[b, 1])
+    mz = half * (v[c, 2] + v[d, 2] - v[a, 2] - v[b, 2])
+    travel = np.sqrt(mx * mx + my * my + mz * mz)
+    margin = (reach + travel) / edge_length
+    if min(s, t) < -margin or max(s, t) > one + margin:
+        return False
+    gx, gy, gz = rx + t * wx - s * ux, ry + t * wy - s * uy, rz + t * wz - s * uz
+    return gx * gx + gy * gy + gz * gz < (reach + travel) * (reach + travel)
 
-    Each particle's opinion counts as much as the sheet is flat there. Zero where that gives no clear direction, on
-    creases: such a pair is kept apart as two small spheres.
+
+@compiled
+def list_edge_pairs(
+    x, v, horizon, reach, edge_length, edges, sharp, starts, stops, pairs,
+    old_second, old_side, old_over, old_load, first, second, side, over, load,
+):  # fmt: skip
+    """List edges that come within ``reach`` [m] of each other where at least one lies in a ``sharp`` bend, shape (E,).
+
+    They are added to the ``pairs`` listed already.
+
+    Returns:
+        The number of pairs; -1 if there is no room for them.
     """
-    unclear = np.float32(0.6)
-    for i in range(start.shape[0] - 1):
-        for p in range(start[i], start[i + 1]):
-            j = pj[p]
-            si, sj = np.float32(side[p, 0]), np.float32(side[p, 1])
-            nx = si * normals[i, 0] - sj * normals[j, 0]
-            ny = si * normals[i, 1] - sj * normals[j, 1]
-            nz = si * normals[i, 2] - sj * normals[j, 2]
-            length = np.sqrt(nx * nx + ny * ny + nz * nz)
-            scale = np.float32(1.0) / length if length > unclear else np.float32(0.0)
-            pair_normal[p, 0], pair_normal[p, 1], pair_normal[p, 2] = nx * scale, ny * scale, nz * scale
+    boxes = swept_boxes(x, v, horizon, edges, reach)
+    cell = np.float32(CELL) * edge_length
+    start, members, in_order, columns, rows, grid = sort_by_cell(boxes, cell)
+    near = np.empty(ROOM, np.int32)
+    box = np.empty(6, np.float32)
+    new_starts, new_stops = np.zeros(edges.shape[0], np.int32), np.zeros(edges.shape[0], np.int32)
+    for e in range(edges.shape[0]):
+        new_starts[e] = pairs
+        if sharp[e]:
+            for axis in range(3):
+                box[axis], box[axis + 3] = boxes[e, axis] + reach, boxes[e, axis + 3] - reach
+            found = gather(box, cell, start, members, in_order, columns, rows, grid, near)
+            if pairs + found > first.shape[0]:
+                return -1
+            a, b = edges[e, 0], edges[e, 1]
+            for n in range(found):
+                f = near[n]
+                c, d = edges[f, 0], edges[f, 1]
+                if a in (c, d) or b in (c, d) or (sharp[f] and f < e):
+                    continue
+                if not _may_meet(x, v, horizon, reach, edge_length, a, b, c, d):
+                    continue
+                first[pairs], second[pairs], side[pairs], over[pairs] = e, f, np.int8(0), np.int8(0)
+                for m in range(4):
+                    load[pairs, m] = np.float32(0.0)
+                for k in range(starts[e], stops[e]):
+                    if old_second[k] == f:
+                        side[pairs], over[pairs] = old_side[k], old_over[k]
+                        for m in range(4):
+                            load[pairs, m] = old_load[k, m]
+                pairs += 1
+        new_stops[e] = pairs
+    starts[:], stops[:] = new_starts, new_stops
+    return pairs
