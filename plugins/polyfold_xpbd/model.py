@@ -28,6 +28,7 @@ class ClothModel:
         normal_use: 1 where the corner takes its normal from that triangle, float32, shape (T, 3).
         panel: panel of each triangle, int32, shape (T,).
         edge_length: mean rest length [m].
+        bending_rate: angular frequency of the fastest bending [1/s].
     """
 
     edges: NDArray[np.uint32]
@@ -39,6 +40,7 @@ class ClothModel:
     normal_use: NDArray[np.float32]
     panel: NDArray[np.int32]
     edge_length: float
+    bending_rate: float
 
 
 def build_model(mesh: Mesh, fabric: Fabric) -> ClothModel:
@@ -61,6 +63,7 @@ def build_model(mesh: Mesh, fabric: Fabric) -> ClothModel:
         np.where(from_back, 0.0, 1.0).astype(np.float32),
         np.asarray(mesh.panel, np.int32),
         float(lengths.mean()),
+        _fastest(hinges, weights, len(rest)),
     )
 
 
@@ -113,6 +116,20 @@ def _hinges(
     sharpest = 2.0 * np.hypot(*(x1 - x0).T) / around
     elastic = np.minimum(fabric.crease_yield, SHARPEST * sharpest) * around * root
     return hinges, stencil * root[:, None], elastic
+
+
+def _fastest(hinges: NDArray[np.int64], weights: NDArray[np.float64], count: int) -> float:
+    """Angular frequency [1/s] of the stiffest mode of all hinges together, by power iteration."""
+    from scipy.sparse import csr_array
+
+    if len(hinges) == 0:
+        return 0.0
+    stencils = csr_array((weights.ravel(), hinges.ravel(), 4 * np.arange(len(hinges) + 1)), shape=(len(hinges), count))
+    shape = np.random.default_rng(0).standard_normal(count)
+    for _ in range(40):
+        shape = stencils.T @ (stencils @ shape)
+        shape /= max(np.linalg.norm(shape), 1e-30)
+    return float(np.linalg.norm(stencils @ shape))
 
 
 def _rigidity(along: NDArray[np.float64], fabric: Fabric) -> NDArray[np.float64]:

@@ -32,9 +32,22 @@ REST_SPEED, LONGEST_SETTLING = 0.003, 1.5
 """RMS speed that counts as rest [m/s], and how long to wait for it [s]."""
 
 
-def time_step(edge_length: float) -> float:
-    """Substep [s] that a mesh of this edge length [m] needs."""
-    return 1 / 750 if edge_length < 0.0128 else 1 / 600
+STIFFEST, LEAD = 1.2, 8.0
+"""What keeps bending stable: its fastest squared frequency, times the squared substep, times the lead plus one half.
+
+The lead is how far ahead, in substeps, bending looks along the motion, which damps it; no further than it need be.
+"""
+
+
+def time_step(edge_length: float, bending_rate: float = 0.0) -> float:
+    """Substep [s] that a mesh of this edge length [m] and this fastest bending [1/s] needs."""
+    step = 1 / 750 if edge_length < 0.0128 else 1 / 600
+    return min(step, float(np.sqrt(STIFFEST)) / max(bending_rate, 1e-9))
+
+
+def bending_lead(step: float, bending_rate: float) -> float:
+    """How far bending looks ahead [s] at this substep [s] and this fastest bending [1/s]."""
+    return step * min(LEAD, STIFFEST / max(step * bending_rate, 1e-9) ** 2 - 0.5)
 
 
 @lru_cache(maxsize=4)
@@ -51,11 +64,12 @@ class Solver:
         self._model, self._tethers = _constraints(mesh, fabric)
         self._thickness = fabric.thickness
         edge_length = self._model.edge_length
-        self.dt = time_step(edge_length)
+        self.dt = time_step(edge_length, self._model.bending_rate)
         self._settings = np.array(
             [
                 self.dt, fabric.thickness, SLACK, edge_length, fabric.table_friction, fabric.cloth_friction,
                 RECOVERY * self.dt, TOP_SPEED, fabric.crease_set,
+                bending_lead(self.dt, self._model.bending_rate),
             ],
             np.float32,
         )  # fmt: skip

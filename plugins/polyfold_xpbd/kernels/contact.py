@@ -68,7 +68,7 @@ def _side_of_neighbour(p, pairs, corners, panel, first, second, side, over):
 
 @compiled
 def _rival(found, i, t, nx, ny, nz, corners, panel, second, bodies, normals, source):
-    """Which of the ``found`` contacts is of vertex i with a triangle next to t and in its plane; ``found`` if none is."""
+    """Which of the ``found`` contacts is of vertex i with a triangle next to t, in its plane; ``found`` if none."""
     k = found - 1
     while k >= 0 and bodies[k, 0] == i:
         other = second[source[k]]

@@ -20,10 +20,8 @@ LOOK_EVERY = 8
 """Substeps between looks at which listed pairs touch, where and which way."""
 HORIZON = 16
 """Substeps for which a list of pairs looks ahead."""
-REST_OVER = 20
+REST_OVER = 40
 """Substeps over which the cloth is watched for rest."""
-LEAD = 8.0
-"""How far ahead, in substeps, bending looks along the motion: that damps it."""
 
 
 def _digest() -> str:
@@ -49,7 +47,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             clock: substeps since the stage began, for how many the cloth has been slow, substeps since the list of
                 pairs was made, its vertex pairs, all its pairs and the contacts in use, int64, shape (6,).
             settings: time step [s], thickness, slack and cell [m], friction of table and cloth, recovery [m] and top
-                speed [m/s], share of a crease that stays, float32, shape (9,).
+                speed [m/s], share of a crease that stays, lead of bending [s], float32, shape (10,).
 
         Returns:
             (status, substeps done).
@@ -61,7 +59,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         floor = np.float32(0.5) * thickness
         horizon, window = np.float32(HORIZON) * dt, np.float32(LOOK_EVERY) * dt
         for k in range(begin, end):
-            bend(x, v, previous, hinges, hinge_weights, rest, np.float32(LEAD) * dt, dt)
+            bend(x, v, previous, hinges, hinge_weights, rest, settings[9], dt)
             if (
                 clock[2] < 0
                 or clock[2] >= HORIZON
