@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from polyfold.errors import GarmentError
 from polyfold.geometry import FoldLine, rotate
-from polyfold.polygon._covering import inside_depth, silhouette
-from polyfold.polygon._layers import Facet, fold_facets
+from polyfold.polygon._covering import inside_depth, nearest_point, silhouette
+from polyfold.polygon._layers import Facet, fold_facets, plies_at
 from polyfold.polygon._text import model_text
 from polyfold.polygon._vertices import VertexState
 
@@ -32,6 +32,10 @@ class FoldedModel:
         descriptions: vertex name -> what it is, in words.
         folds: the fold lines so far, oldest first, each in the frame of ``rest``.
         kind: the garment kind.
+        allowances: how much cloth across its line [px] the bend of each fold uses up; all 0 if not given. What lies
+            within half of it of the line is in the bend, so the crease's edge is that half short of the line, while
+            the rest of the lifted part comes to lie exactly on its mirror image. Negative where the outer plies of a
+            thick packet stand out beyond the line.
     """
 
     rest: Floats
@@ -39,6 +43,7 @@ class FoldedModel:
     descriptions: Mapping[str, str]
     folds: tuple[FoldLine, ...] = ()
     kind: str = "cloth"
+    allowances: tuple[float, ...] = ()
     _facets: tuple[Facet, ...] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -51,19 +56,38 @@ class FoldedModel:
         object.__setattr__(self, "rest", rest)
         object.__setattr__(self, "names", tuple(self.names))
         object.__setattr__(self, "folds", tuple(self.folds))
+        allowances = tuple(self.allowances) or (0.0,) * len(self.folds)
+        if len(allowances) != len(self.folds):
+            raise GarmentError(f"there are {len(self.folds)} folds and {len(allowances)} allowances; give one per fold")
+        object.__setattr__(self, "allowances", allowances)
 
-    def fold(self, line: FoldLine) -> FoldedModel:
+    def fold(self, line: FoldLine, allowance: float = 0.0) -> FoldedModel:
         """The model after one more fold: the cloth left of ``line`` is lifted, mirrored and laid on top.
+
+        Args:
+            line: the fold line [px].
+            allowance: how much cloth across the line [px] the bend uses up.
 
         Raises:
             PlanError: if the line is too short, or leaves all cloth on one side; the message says which.
         """
-        facets = fold_facets(self.facets(), line, len(self.folds) + 1)
-        return FoldedModel(self.rest, self.names, self.descriptions, (*self.folds, line), self.kind, facets)
+        facets = fold_facets(self.facets(), line, len(self.folds) + 1, allowance)
+        folds, allowances = (*self.folds, line), (*self.allowances, allowance)
+        return FoldedModel(self.rest, self.names, self.descriptions, folds, self.kind, allowances, facets)
+
+    def plies(self, line: FoldLine) -> float:
+        """How many layers a fold along ``line`` would bend, on average along the crease."""
+        return plies_at(self.facets(), line)
 
     def before(self, fold: int) -> FoldedModel:
         """The model with only the first ``fold`` folds."""
-        return FoldedModel(self.rest, self.names, self.descriptions, self.folds[:fold], self.kind)
+        return self._with(self.folds[:fold], self.allowances[:fold])
+
+    def without(self, fold: int) -> FoldedModel:
+        """The model without its ``fold``-th fold, from 1; the later ones stay and are renumbered."""
+        folds, allowances = list(self.folds), list(self.allowances)
+        del folds[fold - 1], allowances[fold - 1]
+        return self._with(folds, allowances)
 
     def facets(self) -> tuple[Facet, ...]:
         """The flat pieces the garment consists of now."""
@@ -105,21 +129,24 @@ class FoldedModel:
             return rotate(points, angle, centre) + shift
 
         folds = tuple(FoldLine.between(*move([line.start, line.end])) for line in self.folds)
-        return FoldedModel(move(self.rest), self.names, self.descriptions, folds, self.kind)
+        return FoldedModel(move(self.rest), self.names, self.descriptions, folds, self.kind, self.allowances)
 
-    def with_last_fold(self, line: FoldLine) -> FoldedModel:
-        """The model with its last fold line replaced."""
+    def with_last_fold(self, line: FoldLine, allowance: float = 0.0) -> FoldedModel:
+        """The model with its last fold replaced."""
         if not self.folds:
             raise GarmentError("the model has no fold to replace; use fold() to add one")
-        return self.before(len(self.folds) - 1).fold(line)
+        return self.before(len(self.folds) - 1).fold(line, allowance)
+
+    def _with(self, folds: Iterable[FoldLine], allowances: Iterable[float]) -> FoldedModel:
+        return FoldedModel(self.rest, self.names, self.descriptions, tuple(folds), self.kind, tuple(allowances))
 
     @cached_property
     def _pieces(self) -> tuple[Facet, ...]:
         if self._facets is not None:
             return self._facets
         facets: tuple[Facet, ...] = (Facet.flat(self.rest, self.names),)
-        for number, line in enumerate(self.folds, start=1):
-            facets = fold_facets(facets, line, number)
+        for number, (line, allowance) in enumerate(zip(self.folds, self.allowances, strict=True), start=1):
+            facets = fold_facets(facets, line, number, allowance)
         return facets
 
     @cached_property
@@ -149,7 +176,7 @@ class FoldedModel:
         return VertexState(point, self._describe(name, facet.flipped), layers, not covered, facet.flipped)
 
     def _position_of_lost(self, name: str) -> tuple[Facet, Floats]:
-        """Piece and position of a vertex whose own piece was a dropped sliver: it moves with the nearest piece."""
+        """Piece and position of a vertex in a bend, or on a dropped sliver: it moves with the nearest piece."""
         origin = self._rest_point(name)
 
         def depth(facet: Facet) -> float:
@@ -157,7 +184,10 @@ class FoldedModel:
             return inside_depth(origin, at_rest)
 
         nearest = max(self.facets(), key=depth)
-        return nearest, nearest.motion[:, :2] @ origin + nearest.motion[:, 2]
+        point = nearest.motion[:, :2] @ origin + nearest.motion[:, 2]
+        if any(allowance > 0.0 for allowance in self.allowances):
+            point = nearest_point(point, nearest.polygon)  # in a bend: it lies at the crease's edge, not beyond
+        return nearest, point
 
     def _rest_point(self, name: str) -> Floats:
         """Where on the flat garment a vertex lies; for a crease's end, as it was when it was made."""
