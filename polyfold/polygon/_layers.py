@@ -68,6 +68,10 @@ class Facet:
         """Area [px²]."""
         return abs(polygon_area(self.polygon))
 
+    def at_rest(self, points: Floats) -> Floats:
+        """Where points of the piece [px], shape (..., 2), lay on the flat garment."""
+        return (points - self.motion[:, 2]) @ self.motion[:, :2]
+
     def turned_over(self, line: FoldLine, layer: int) -> Facet:
         """The same piece mirrored across a fold line, in another layer."""
         origin = line.mirror(np.zeros(2))

@@ -70,6 +70,21 @@ def test_a_fold_executed_beside_its_line_is_found(grounding, kind):
     assert mean_error(scene, truth) < 8.0
 
 
+@pytest.mark.parametrize("kind", ["square", "rectangle", "tshirt", "pants"])
+def test_corners_that_a_fold_brings_together_are_at_one_place_in_the_scene(grounding, kind):
+    scene, truth = start(grounding, kind, 2021)
+    pairs = {"tshirt": ("hem_left", "hem_right"), "pants": ("waist_left", "waist_right")}
+    pair = pairs.get(kind, ("top_left", "top_right"))
+    planned = FoldLine.moving(*(scene.model.points()[name] for name in pair))
+    middle = truth.rest.mean(0)
+    executed = FoldLine.between(*(np.array([planned.start, planned.end]) + [2.5, 1.0]))
+    truth = truth.fold(executed).transformed(np.radians(1), (3, -4), middle)
+    scene = grounding.ground(seen(), mask_of(truth), template_of(kind), scene, planned)
+    a, b = (scene.model.points()[name] for name in pair)
+    assert np.hypot(*(a - b)) < 1.0
+    assert mean_error(scene, truth) < 6.0
+
+
 @pytest.mark.parametrize(("turn", "shift"), [(0.4, (25, -20)), (2.0, (-15, 10)), (-2.9, (0, 30))])
 def test_a_displaced_garment_is_found_again_and_keeps_its_names(grounding, turn, shift):
     scene, truth = start(grounding, "tshirt", 2013)

@@ -294,3 +294,28 @@ def test_plies_are_counted_at_the_crease():
     assert square().plies(FoldLine((200, 300), (200, 100))) == pytest.approx(1.0)
     assert once.plies(FoldLine((250, 300), (250, 100))) == pytest.approx(2.0)
     assert once.plies(FoldLine((20, 300), (20, 100))) == 0.0
+
+
+def test_vertices_that_a_fold_brings_onto_each_other_stay_together_when_it_comes_to_lie_elsewhere():
+    planned = FoldLine.moving(SQUARE[1], SQUARE[2])
+    model = square().fold(FoldLine((202, 300), (203, 100)), 3.0, planned)
+    found = model.points()
+    for a, b in (("top_left", "top_right"), ("bottom_left", "bottom_right")):
+        np.testing.assert_array_equal(found[a], found[b])
+    shown = json.loads(model.to_text((400, 400)))["vertices"]
+    assert [shown["top_left"][k] for k in "xy"] == [shown["top_right"][k] for k in "xy"]
+    apart = square().fold(FoldLine((202, 300), (203, 100))).points()
+    assert np.hypot(*(apart["top_left"] - apart["top_right"])) > 4.0
+    np.testing.assert_allclose(found["top_right"], (apart["top_left"] + apart["top_right"]) / 2, atol=1e-9)
+
+
+def test_vertices_that_were_meant_to_meet_and_lie_far_apart_do_not():
+    planned = FoldLine.moving(SQUARE[1], SQUARE[2])
+    once = square().fold(FoldLine((197, 300), (197, 100)), planned=planned)
+    assert once.meetings == ((("bottom_left", "bottom_right"), ("top_left", "top_right")),)
+    twice = once.fold(FoldLine((250, 300), (250, 100)).reversed())
+    assert twice.before(1).meetings == once.meetings
+    assert twice.without(1).meetings == ((),)
+    np.testing.assert_array_equal(twice.points()["top_left"], twice.points()["top_right"])
+    parted = FoldedModel(once.rest, CORNERS, {}, (FoldLine((180, 300), (180, 100)),), "square", (), once.meetings)
+    assert np.hypot(*(parted.points()["top_left"] - parted.points()["top_right"])) == pytest.approx(40.0)

@@ -141,7 +141,7 @@ class Silhouette:
         """The model, folded along the refitted line and moved."""
         model = self._model
         if self._line is not None:
-            model = model.fold(self.line(parameters), 2.0 * float(parameters[5]))
+            model = model.fold(self.line(parameters), 2.0 * float(parameters[5]), self._line)
         return model.transformed(float(parameters[2]), parameters[:2], self.centre)
 
     def can_fold(self, parameters: Floats) -> bool:
