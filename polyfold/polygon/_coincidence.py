@@ -12,8 +12,8 @@ from polyfold.geometry import FoldLine
 Floats = NDArray[np.float64]
 
 _MEANT = 0.013
-"""How far from a vertex a line may lay another one that is meant to come onto it, as a share of the garment's size: 2 px
-for one of 150 x 150 px, which is what lines lose whose ends are given in whole pixels."""
+"""How far from a vertex a line may lay another one that is meant to come onto it, as a share of the garment's size: 2
+px for one of 150 x 150 px, which is what lines lose whose ends are given in whole pixels."""
 
 _APART = 0.05
 """How far apart fitted vertices may lie that were brought together, as a share of the garment's size; beyond that, a

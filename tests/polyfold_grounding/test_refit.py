@@ -77,7 +77,7 @@ def test_corners_that_a_fold_brings_together_are_at_one_place_in_the_scene(groun
     pair = pairs.get(kind, ("top_left", "top_right"))
     planned = FoldLine.moving(*(scene.model.points()[name] for name in pair))
     middle = truth.rest.mean(0)
-    executed = FoldLine.between(*(np.array([planned.start, planned.end]) + [2.5, 1.0]))
+    executed = FoldLine.between(*np.add([planned.start, planned.end], [2.5, 1.0]))
     truth = truth.fold(executed).transformed(np.radians(1), (3, -4), middle)
     scene = grounding.ground(seen(), mask_of(truth), template_of(kind), scene, planned)
     a, b = (scene.model.points()[name] for name in pair)
