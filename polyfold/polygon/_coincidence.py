@@ -11,8 +11,8 @@ from polyfold.geometry import FoldLine
 
 Floats = NDArray[np.float64]
 
-_MEANT = 0.013
-"""How far from a vertex a line may lay another one that is meant to come onto it, as a share of the garment's size: 2
+_MEANT = 0.008
+"""How far from a vertex a line may lay another one that is meant to come onto it, as a share of the garment's size: 1
 px for one of 150 x 150 px, which is what lines lose whose ends are given in whole pixels."""
 
 _APART = 0.05
