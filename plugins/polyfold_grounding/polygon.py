@@ -40,6 +40,9 @@ class PolygonGrounding:
             gt=0.0,
             description="Chamfer distance [px, for a garment of 150 x 150 px] above which all rotations are searched",
         )
+        ply_thickness: float = Field(
+            default=0.001, ge=0.0, le=0.02, description="thickness of one layer of the model in a packet [m]"
+        )
 
     def __init__(self, config: Config | None = None) -> None:
         self.config = config or self.Config()
@@ -63,7 +66,10 @@ class PolygonGrounding:
         if previous is None or previous.model is None:
             tracked = first_model(template, evidence, self.config.rotations, self.config.optimizer)
         else:
-            tracked = next_model(previous.model, previous.contour, fold_line, evidence, self.config.displaced_px)
+            thickness = self.config.ply_thickness * observation.camera.pixels_per_metre
+            tracked = next_model(
+                previous.model, previous.contour, fold_line, evidence, self.config.displaced_px, thickness
+            )
         return self._scene(template, mask, evidence.contour, tracked.model, tracked.chamfer, tracked.notes)
 
     def _scene(

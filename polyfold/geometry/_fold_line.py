@@ -57,6 +57,12 @@ class FoldLine:
         points = np.asarray(points, float)
         return np.where(self.lifts(points)[..., None], self.mirror(points), points)
 
+    def shifted(self, distance: float) -> FoldLine:
+        """The parallel line ``distance`` [px] further to the lifted (left) side."""
+        along = np.subtract(self.end, self.start) / self.length
+        shift = distance * np.array([along[1], -along[0]])
+        return FoldLine.between(self.start + shift, self.end + shift)
+
     def reversed(self) -> FoldLine:
         """The same line with the other side lifted."""
         return FoldLine(self.end, self.start)

@@ -29,6 +29,17 @@ def inside_depth(point: ArrayLike, polygon: ArrayLike) -> float:
     return distance if (straddles & (crossing > point[0])).sum() % 2 else -distance
 
 
+def nearest_point(point: ArrayLike, polygon: ArrayLike) -> Floats:
+    """The point of a filled polygon, shape (N, 2), nearest to a point, shape (2,) [px]."""
+    point, a = np.asarray(point, float), np.asarray(polygon, float)
+    if inside_depth(point, a) >= 0.0:
+        return point
+    edge = np.roll(a, -1, axis=0) - a
+    share = np.clip(((point - a) * edge).sum(1) / np.maximum((edge * edge).sum(1), 1e-12), 0.0, 1.0)
+    candidates = a + share[:, None] * edge
+    return candidates[np.hypot(*(candidates - point).T).argmin()]
+
+
 def shapes(polygons: Iterable[Floats]) -> list[BaseGeometry]:
     """Polygons [px], each of shape (N, 2), as valid shapes: a piece may touch itself where a fold line met a corner."""
     import shapely

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.errors import GarmentError
-from polyfold.geometry import FoldLine, rotate
-from polyfold.polygon._covering import inside_depth, silhouette
-from polyfold.polygon._layers import Facet, fold_facets
+from polyfold.geometry import FoldLine, polygon_area, rotate
+from polyfold.polygon._coincidence import Pair, meetings, together
+from polyfold.polygon._covering import inside_depth, nearest_point, silhouette
+from polyfold.polygon._layers import Facet, fold_facets, plies_at
 from polyfold.polygon._text import model_text
 from polyfold.polygon._vertices import VertexState
 
@@ -20,6 +21,15 @@ Floats = NDArray[np.float64]
 
 _TOUCH = 1.0
 """A vertex this close to a piece above it [px] counts as hidden: its position is not known better than that."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """The topmost piece that has a vertex, its place there [px], shape (2,), and all layers that have it."""
+
+    facet: Facet
+    point: Floats
+    layers: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +42,11 @@ class FoldedModel:
         descriptions: vertex name -> what it is, in words.
         folds: the fold lines so far, oldest first, each in the frame of ``rest``.
         kind: the garment kind.
+        allowances: how much cloth across its line [px] the bend of each fold uses up; all 0 if not given. What lies
+            within half of it of the line is in the bend, so the crease's edge is that half short of the line, while
+            the rest of the lifted part comes to lie exactly on its mirror image. Negative where the outer plies of a
+            thick packet stand out beyond the line.
+        meetings: which vertices each fold was meant to bring onto which, as pairs of names; none if not given.
     """
 
     rest: Floats
@@ -39,6 +54,8 @@ class FoldedModel:
     descriptions: Mapping[str, str]
     folds: tuple[FoldLine, ...] = ()
     kind: str = "cloth"
+    allowances: tuple[float, ...] = ()
+    meetings: tuple[tuple[Pair, ...], ...] = ()
     _facets: tuple[Facet, ...] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -51,19 +68,50 @@ class FoldedModel:
         object.__setattr__(self, "rest", rest)
         object.__setattr__(self, "names", tuple(self.names))
         object.__setattr__(self, "folds", tuple(self.folds))
+        object.__setattr__(self, "allowances", tuple(self.allowances) or (0.0,) * len(self.folds))
+        object.__setattr__(self, "meetings", tuple(self.meetings) or ((),) * len(self.folds))
+        for what, given in (("allowances", self.allowances), ("meetings", self.meetings)):
+            if len(given) != len(self.folds):
+                raise GarmentError(f"there are {len(self.folds)} folds and {len(given)} {what}; give one per fold")
 
-    def fold(self, line: FoldLine) -> FoldedModel:
+    def fold(self, line: FoldLine, allowance: float = 0.0, planned: FoldLine | None = None) -> FoldedModel:
         """The model after one more fold: the cloth left of ``line`` is lifted, mirrored and laid on top.
+
+        Args:
+            line: the fold line [px].
+            allowance: how much cloth across the line [px] the bend uses up.
+            planned: the line that was meant [px], where ``line`` is what became of it: the vertices that it brings onto
+                each other are then at one place, although ``line`` would lay them a little apart.
 
         Raises:
             PlanError: if the line is too short, or leaves all cloth on one side; the message says which.
         """
-        facets = fold_facets(self.facets(), line, len(self.folds) + 1)
-        return FoldedModel(self.rest, self.names, self.descriptions, (*self.folds, line), self.kind, facets)
+        facets = fold_facets(self.facets(), line, len(self.folds) + 1, allowance)
+        met = meetings(self.points(), planned, self._size) if planned else ()
+        return FoldedModel(
+            self.rest,
+            self.names,
+            self.descriptions,
+            (*self.folds, line),
+            self.kind,
+            (*self.allowances, allowance),
+            (*self.meetings, met),
+            facets,
+        )
+
+    def plies(self, line: FoldLine) -> float:
+        """How many layers a fold along ``line`` would bend, on average along the crease."""
+        return plies_at(self.facets(), line)
 
     def before(self, fold: int) -> FoldedModel:
         """The model with only the first ``fold`` folds."""
-        return FoldedModel(self.rest, self.names, self.descriptions, self.folds[:fold], self.kind)
+        return self._of(range(fold), self.meetings)
+
+    def without(self, fold: int) -> FoldedModel:
+        """The model without its ``fold``-th fold, from 1; the later ones stay, and their creases are renumbered."""
+        # Creases have other names then, so that what met them is forgotten.
+        met = [tuple(pair for pair in pairs if set(pair) <= set(self.names)) for pairs in self.meetings]
+        return self._of([number for number in range(len(self.folds)) if number != fold - 1], met)
 
     def facets(self) -> tuple[Facet, ...]:
         """The flat pieces the garment consists of now."""
@@ -74,7 +122,11 @@ class FoldedModel:
         return self._outline
 
     def vertices(self) -> dict[str, VertexState]:
-        """Every named vertex as it lies now: the template's in polygon order, then the creases' ends."""
+        """Every named vertex as it lies now: the template's in polygon order, then the creases' ends.
+
+        Vertices that a fold was meant to bring onto each other are at one place, the mean of where their pieces have
+        them.
+        """
         return dict(self._vertices)
 
     def points(self) -> dict[str, Floats]:
@@ -105,21 +157,35 @@ class FoldedModel:
             return rotate(points, angle, centre) + shift
 
         folds = tuple(FoldLine.between(*move([line.start, line.end])) for line in self.folds)
-        return FoldedModel(move(self.rest), self.names, self.descriptions, folds, self.kind)
+        return FoldedModel(
+            move(self.rest), self.names, self.descriptions, folds, self.kind, self.allowances, self.meetings
+        )
 
-    def with_last_fold(self, line: FoldLine) -> FoldedModel:
-        """The model with its last fold line replaced."""
+    def with_last_fold(self, line: FoldLine, allowance: float = 0.0) -> FoldedModel:
+        """The model with its last fold replaced."""
         if not self.folds:
             raise GarmentError("the model has no fold to replace; use fold() to add one")
-        return self.before(len(self.folds) - 1).fold(line)
+        return self.before(len(self.folds) - 1).fold(line, allowance)
+
+    def _of(self, kept: Sequence[int], meetings: Sequence[tuple[Pair, ...]]) -> FoldedModel:
+        """The model with only some of its folds, counted from 0."""
+        return FoldedModel(
+            self.rest,
+            self.names,
+            self.descriptions,
+            tuple(self.folds[k] for k in kept),
+            self.kind,
+            tuple(self.allowances[k] for k in kept),
+            tuple(meetings[k] for k in kept),
+        )
 
     @cached_property
     def _pieces(self) -> tuple[Facet, ...]:
         if self._facets is not None:
             return self._facets
         facets: tuple[Facet, ...] = (Facet.flat(self.rest, self.names),)
-        for number, line in enumerate(self.folds, start=1):
-            facets = fold_facets(facets, line, number)
+        for number, (line, allowance) in enumerate(zip(self.folds, self.allowances, strict=True), start=1):
+            facets = fold_facets(facets, line, number, allowance)
         return facets
 
     @cached_property
@@ -128,36 +194,47 @@ class FoldedModel:
 
     @cached_property
     def _vertices(self) -> dict[str, VertexState]:
-        return {name: self._state(name) for name in self._all_names()}
+        found = {name: self._found(name) for name in self._all_names()}
+        met = [pair for pairs in self.meetings for pair in pairs]
+        points = together({name: place.point for name, place in found.items()}, met, self._size)
+        return {name: self._state(name, place, points[name]) for name, place in found.items()}
+
+    @property
+    def _size(self) -> float:
+        """Square root of the flat garment's area [px]."""
+        return float(np.sqrt(abs(polygon_area(self.rest))))
 
     def _all_names(self) -> list[str]:
         creases = [f"fold{k}_{end}" for k in range(1, len(self.folds) + 1) for end in ("start", "end")]
         return [*self.names, *creases]
 
-    def _state(self, name: str) -> VertexState:
+    def _found(self, name: str) -> _Place:
         owners = [(facet, i) for facet in self.facets() for i, names in enumerate(facet.names) if name in names]
-        if owners:
-            facet, corner = max(owners, key=lambda owner: owner[0].layer)
-            point = facet.polygon[corner]
-        else:
+        if not owners:
             facet, point = self._position_of_lost(name)
-            owners = [(facet, 0)]
+            return _Place(facet, point, (facet.layer,))
+        facet, corner = max(owners, key=lambda owner: owner[0].layer)
+        return _Place(facet, facet.polygon[corner], tuple(sorted({owner.layer for owner, _ in owners})))
+
+    def _state(self, name: str, place: _Place, point: Floats) -> VertexState:
+        facet = place.facet
         covered = any(
-            other.layer > facet.layer and inside_depth(point, other.polygon) > -_TOUCH for other in self.facets()
+            other.layer > facet.layer and inside_depth(place.point, other.polygon) > -_TOUCH for other in self.facets()
         )
-        layers = tuple(sorted({owner.layer for owner, _ in owners}))
-        return VertexState(point, self._describe(name, facet.flipped), layers, not covered, facet.flipped)
+        return VertexState(point, self._describe(name, facet.flipped), place.layers, not covered, facet.flipped)
 
     def _position_of_lost(self, name: str) -> tuple[Facet, Floats]:
-        """Piece and position of a vertex whose own piece was a dropped sliver: it moves with the nearest piece."""
+        """Piece and position of a vertex in a bend, or on a dropped sliver: it moves with the nearest piece."""
         origin = self._rest_point(name)
 
         def depth(facet: Facet) -> float:
-            at_rest = (facet.polygon - facet.motion[:, 2]) @ facet.motion[:, :2]
-            return inside_depth(origin, at_rest)
+            return inside_depth(origin, facet.at_rest(facet.polygon))
 
         nearest = max(self.facets(), key=depth)
-        return nearest, nearest.motion[:, :2] @ origin + nearest.motion[:, 2]
+        point = nearest.motion[:, :2] @ origin + nearest.motion[:, 2]
+        if any(allowance > 0.0 for allowance in self.allowances):
+            point = nearest_point(point, nearest.polygon)  # in a bend: it lies at the crease's edge, not beyond
+        return nearest, point
 
     def _rest_point(self, name: str) -> Floats:
         """Where on the flat garment a vertex lies; for a crease's end, as it was when it was made."""
@@ -167,7 +244,7 @@ class FoldedModel:
         for facet in self.before(number).facets():
             for i, names in enumerate(facet.names):
                 if name in names:
-                    return facet.motion[:, :2].T @ (facet.polygon[i] - facet.motion[:, 2])
+                    return facet.at_rest(facet.polygon[i])
         raise GarmentError(f"the crease of fold {number} left no trace; fold along a line that crosses more cloth")
 
     def _describe(self, name: str, flipped: bool) -> str:

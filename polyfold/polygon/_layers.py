@@ -68,6 +68,10 @@ class Facet:
         """Area [px²]."""
         return abs(polygon_area(self.polygon))
 
+    def at_rest(self, points: Floats) -> Floats:
+        """Where points of the piece [px], shape (..., 2), lay on the flat garment."""
+        return (points - self.motion[:, 2]) @ self.motion[:, :2]
+
     def turned_over(self, line: FoldLine, layer: int) -> Facet:
         """The same piece mirrored across a fold line, in another layer."""
         origin = line.mirror(np.zeros(2))
@@ -102,13 +106,15 @@ def cut_facets(
     return tuple(lifted), tuple(remaining)
 
 
-def fold_facets(facets: Sequence[Facet], line: FoldLine, number: int) -> tuple[Facet, ...]:
+def fold_facets(facets: Sequence[Facet], line: FoldLine, number: int, allowance: float = 0.0) -> tuple[Facet, ...]:
     """Lift what lies left of a fold line, mirror it and lay it on top of all that remains.
 
     Args:
         facets: the pieces before the fold.
         line: the fold line [px].
         number: which fold this is, from 1; names the crease's ends ``fold{number}_start`` and ``fold{number}_end``.
+        allowance: how much cloth across the line [px] the bend uses up, half of it on either side: the crease's edge
+            then lies that half short of the line. Negative where a thick packet's outer plies stand out beyond it.
 
     Returns:
         The pieces after the fold; those under :data:`LEAST_AREA` are dropped.
@@ -121,11 +127,30 @@ def fold_facets(facets: Sequence[Facet], line: FoldLine, number: int) -> tuple[F
             f"the fold line is {line.length:.0f} px long, so its direction is uncertain; choose two points at least "
             f"{LEAST_LENGTH:.0f} px apart (vertices brought together by a fold coincide: use the crease's ends)"
         )
-    lifted, remaining = cut_facets(facets, line, LEAST_AREA)
+    above, below = line.shifted(allowance / 2), line.shifted(-allowance / 2)
+    lifted, remaining = cut_facets(facets, above, LEAST_AREA)[0], cut_facets(facets, below, LEAST_AREA)[1]
     _check_sides(lifted, remaining)
-    lifted, remaining = _name_crease(lifted, remaining, line, number)
+    if allowance < 0.0:
+        # The strip between the two cuts belongs to both sides; a vertex in it, only to its own.
+        lifted = tuple(_without_names(piece, line.distance(piece.polygon) < 0.0) for piece in lifted)
+        remaining = tuple(_without_names(piece, line.distance(piece.polygon) > 0.0) for piece in remaining)
+    lifted, remaining = _name_crease(lifted, above, remaining, below, number)
     top = max(facet.layer for facet in remaining) + 1 + max(facet.layer for facet in lifted)
     return (*remaining, *(facet.turned_over(line, top - facet.layer) for facet in lifted))
+
+
+def plies_at(facets: Iterable[Facet], line: FoldLine) -> float:
+    """How many layers a fold along a line would bend, on average along the crease; 0 if it crosses no cloth."""
+    lifted, _ = cut_facets(facets, line)
+    start, along = np.asarray(line.start), np.subtract(line.end, line.start) / line.length
+    bent, reach = 0.0, []
+    for piece in lifted:
+        on = _on_crease(piece, line)
+        if on.any():
+            ends = (piece.polygon[on] - start) @ along
+            bent += float(np.ptp(ends))
+            reach += [ends.min(), ends.max()]
+    return bent / float(np.ptp(reach)) if reach and np.ptp(reach) > 0.0 else 0.0
 
 
 def _check_sides(lifted: Sequence[Facet], remaining: Sequence[Facet]) -> None:
@@ -141,14 +166,21 @@ def _check_sides(lifted: Sequence[Facet], remaining: Sequence[Facet]) -> None:
         )
 
 
+def _without_names(piece: Facet, corners: NDArray[np.bool_]) -> Facet:
+    names = tuple(() if bare else known for known, bare in zip(piece.names, corners, strict=True))
+    return replace(piece, names=names)
+
+
 def _name_crease(
-    lifted: Sequence[Facet], remaining: Sequence[Facet], line: FoldLine, number: int
+    lifted: Sequence[Facet], above: FoldLine, remaining: Sequence[Facet], below: FoldLine, number: int
 ) -> tuple[list[Facet], list[Facet]]:
-    """Name the outermost ends of the new crease in every piece that reaches them."""
-    start = np.asarray(line.start)
-    direction = np.subtract(line.end, line.start) / line.length
-    pieces = [*lifted, *remaining]
-    along = [np.where(_on_crease(piece, line), (piece.polygon - start) @ direction, np.nan) for piece in pieces]
+    """Name the outermost ends of the new crease in every piece that reaches them, cut along ``above`` or ``below``."""
+    direction = np.subtract(above.end, above.start) / above.length
+    pieces, lines = [*lifted, *remaining], [above] * len(lifted) + [below] * len(remaining)
+    along = [
+        np.where(_on_crease(piece, line), (piece.polygon - np.asarray(line.start)) @ direction, np.nan)
+        for piece, line in zip(pieces, lines, strict=True)
+    ]
     reach = np.concatenate(along)
     first, last = np.nanmin(reach), np.nanmax(reach)
     named = []

@@ -59,6 +59,18 @@ def test_the_scene_is_ready_for_planning(grounding):
     assert np.array_equal(scene.mask, mask)
 
 
+def test_the_lines_of_sleeves_are_near_the_true_ones(grounding):
+    turns = []
+    for seed in range(2020, 2032):
+        mask, truth = flat_garment("tshirt", seed, 0.1)
+        found = grounding.ground(None, mask, tshirt_template()).model.rest
+        for side in ("left", "right"):
+            ends = [tshirt_template().names.index(f"{name}_{side}") for name in ("armpit", "shoulder")]
+            angles = [np.arctan2(*(points[ends[1]] - points[ends[0]])) for points in (found, truth)]
+            turns.append(abs(np.degrees(angles[0] - angles[1])))
+    assert np.median(turns) < 2.0
+
+
 @pytest.mark.parametrize("angle", [-2.0, -0.5, 0.3, 1.2, 3.0])
 def test_a_square_is_named_by_the_edge_nearest_the_top(grounding, angle):
     corners = rotate([(-80, 80), (-80, -80), (80, -80), (80, 80)], angle) + 200

@@ -256,3 +256,66 @@ def test_text_is_strict_json_in_a_stable_order():
     }
     assert ["fold1_end", "fold1_start", "crease"] in [sorted(e[:2]) + e[2:] for e in content["edges"]["1"]]
     assert text == square().fold(FoldLine((200, 300), (200, 100))).to_text((400, 400))
+
+
+@pytest.mark.parametrize("allowance", [12.0, 0.0, -8.0])
+def test_a_crease_uses_up_cloth_and_the_flap_lies_on_its_mirror_image(allowance):
+    line = FoldLine((200, 300), (200, 100))
+    model = square().fold(line, allowance)
+    plain = square().fold(line)
+    assert model.allowances == (allowance,)
+    assert model.outline()[:, 0].min() == pytest.approx(200 + allowance / 2)
+    for name in CORNERS:
+        np.testing.assert_allclose(model.points()[name], plain.points()[name], atol=1e-9)
+    for end in ("fold1_start", "fold1_end"):
+        assert model.points()[end][0] == pytest.approx(200 + allowance / 2)
+        assert len(model.vertices()[end].layers) == 2
+
+
+def test_a_vertex_in_a_bend_lies_at_its_edge():
+    line = FoldLine((100, 130), (300, 104))
+    model = square().fold(line, 10.0)
+    assert 0.0 < line.distance(SQUARE[2]) < 5.0
+    assert line.distance(model.points()["top_right"]) == pytest.approx(-5.0)
+    assert line.distance(model.points()["top_left"]) == pytest.approx(-line.distance(SQUARE[1]))
+
+
+def test_allowances_are_kept_when_the_model_moves_or_loses_a_fold():
+    model = square().fold(FoldLine((200, 300), (200, 100)), 6.0).fold(FoldLine((250, 300), (250, 100)), 4.0)
+    assert model.transformed(0.3, (5, 5)).allowances == (6.0, 4.0)
+    assert model.before(1).allowances == (6.0,)
+    assert model.without(1).allowances == (4.0,)
+    with pytest.raises(GarmentError, match="one per fold"):
+        FoldedModel(model.rest, model.names, {}, model.folds, "square", (1.0,))
+
+
+def test_plies_are_counted_at_the_crease():
+    once = square().fold(FoldLine((200, 300), (200, 100)))
+    assert square().plies(FoldLine((200, 300), (200, 100))) == pytest.approx(1.0)
+    assert once.plies(FoldLine((250, 300), (250, 100))) == pytest.approx(2.0)
+    assert once.plies(FoldLine((20, 300), (20, 100))) == 0.0
+
+
+def test_vertices_that_a_fold_brings_onto_each_other_stay_together_when_it_comes_to_lie_elsewhere():
+    planned = FoldLine.moving(SQUARE[1], SQUARE[2])
+    model = square().fold(FoldLine((202, 300), (203, 100)), 3.0, planned)
+    found = model.points()
+    for a, b in (("top_left", "top_right"), ("bottom_left", "bottom_right")):
+        np.testing.assert_array_equal(found[a], found[b])
+    shown = json.loads(model.to_text((400, 400)))["vertices"]
+    assert [shown["top_left"][k] for k in "xy"] == [shown["top_right"][k] for k in "xy"]
+    apart = square().fold(FoldLine((202, 300), (203, 100))).points()
+    assert np.hypot(*(apart["top_left"] - apart["top_right"])) > 4.0
+    np.testing.assert_allclose(found["top_right"], (apart["top_left"] + apart["top_right"]) / 2, atol=1e-9)
+
+
+def test_vertices_that_were_meant_to_meet_and_lie_far_apart_do_not():
+    planned = FoldLine.moving(SQUARE[1], SQUARE[2])
+    once = square().fold(FoldLine((197, 300), (197, 100)), planned=planned)
+    assert once.meetings == ((("bottom_left", "bottom_right"), ("top_left", "top_right")),)
+    twice = once.fold(FoldLine((250, 300), (250, 100)).reversed())
+    assert twice.before(1).meetings == once.meetings
+    assert twice.without(1).meetings == ((),)
+    np.testing.assert_array_equal(twice.points()["top_left"], twice.points()["top_right"])
+    parted = FoldedModel(once.rest, CORNERS, {}, (FoldLine((180, 300), (180, 100)),), "square", (), once.meetings)
+    assert np.hypot(*(parted.points()["top_left"] - parted.points()["top_right"])) == pytest.approx(40.0)

@@ -1,9 +1,10 @@
 """Measure how well polygons are fitted.
 
-    python -m experiments.benchmarks.fitting [--kind tshirt] [--n 200] [--folds] [--data DIR --real]
+    python -m experiments.benchmarks.fitting [--kind tshirt] [--n 200] [--folds | --creases] [--data DIR --real]
 
 Without a switch, camera images of simulated flat garments at any rotation. ``--folds`` follows them through the folds
-of the standard tasks, each drawn on the true garment and executed by a policy. ``--data DIR --real`` fits outlines of
+of the standard tasks, each drawn on the true garment and executed by a policy. ``--creases`` compares the lines of the
+sleeves' folds on the fit with those on the true garment. ``--data DIR --real`` fits outlines of
 real garments and compares with hand-annotated keypoints. Seconds are CPU time of one grounding.
 """
 
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from experiments.benchmarks.fitting.creases import CreaseResult, measure_creases
 from experiments.benchmarks.fitting.real import DATASETS, measure_real
 from experiments.benchmarks.fitting.simulated import FlatResult, FoldResult, measure_flat, measure_folds
 from polyfold import plugins
@@ -34,6 +36,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--n", type=int, default=200, help="garments of each kind (default: 200)")
     parser.add_argument("--first-seed", type=int, default=5000, help="seed of the first garment (default: 5000)")
     parser.add_argument("--folds", action="store_true", help="follow garments through folds")
+    parser.add_argument(
+        "--creases", action="store_true", help="compare fold lines through vertices (t-shirts' sleeves)"
+    )
     parser.add_argument("--policy", default="caso", help="policy that executes the folds (default: caso)")
     parser.add_argument("--real", action="store_true", help="fit real outlines; needs --data")
     parser.add_argument("--data", type=Path, help="folder with the outlines, one JSON object a line")
@@ -46,6 +51,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     seeds = range(options.first_seed, options.first_seed + options.n)
     if options.real:
         _print_real(options.data, options.kind or list(DATASETS), options.rows, grounding)
+    elif options.creases:
+        print("\n| fold line | n | median [deg] | p90 [deg] | median with one fitted end [deg] |")
+        print("|---|---|---|---|---|")
+        for kind in options.kind or ["tshirt"]:
+            _print_creases(measure_creases(kind, seeds, grounding))
     elif options.folds:
         print("\n| garment | folds | n | median [px] | p90 [px] | mean > 25 px | CPU median [s] | CPU max [s] |")
         print("|---|---|---|---|---|---|---|---|")
@@ -77,6 +87,18 @@ def _print_folds(kind: str, results: list[FoldResult]) -> None:
         print(
             f"| {kind} | {folds} | {len(chosen)} | {np.median(errors):.1f} | {np.percentile(errors, 90):.1f} | "
             f"{np.mean(np.array(errors) > FAR):.1%} | {np.median(seconds):.3f} | {max(seconds):.3f} |",
+            flush=True,
+        )
+
+
+def _print_creases(results: list[CreaseResult]) -> None:
+    for task in dict.fromkeys(result.task for result in results):
+        chosen = [result for result in results if result.task == task]
+        turns = [result.turn for result in chosen]
+        blame = [f"{name} {np.median([r.blame[name] for r in chosen]):.1f}" for name in chosen[0].blame]
+        print(
+            f"| {task} | {len(chosen)} | {np.median(turns):.1f} | {np.percentile(turns, 90):.1f} | "
+            f"{', '.join(blame)} |",
             flush=True,
         )
 

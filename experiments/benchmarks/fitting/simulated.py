@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,6 +46,18 @@ class FoldResult:
     folds: int
     error: float
     seconds: float
+
+
+def fitted_garments(
+    kind: str, seeds: Iterable[int], grounding: Grounding, rotation: float
+) -> Iterator[tuple[dict[str, Floats], dict[str, Floats]]]:
+    """The fit's and the true vertices, name -> pixel, of flat garments turned by up to ``rotation`` [deg]."""
+    garments, simulator, segmenter = _parts(kind, rotation)
+    template = garments.template()
+    for seed in _progress(seeds, f"{kind}, creases"):
+        observation = simulator.reset(garments.generate(seed), seed)
+        scene, _ = _timed(grounding, observation, segmenter, template)
+        yield _model_of(scene).points(), _pixels(simulator)
 
 
 def measure_flat(kind: str, seeds: Iterable[int], grounding: Grounding) -> list[FlatResult]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.geometry import polygon_area, rotate
 from polyfold.polygon import Template
+from polyfold_grounding.fitting.blunt_corners import with_blunt_corners
+from polyfold_grounding.fitting.corners import on_contour
 from polyfold_grounding.fitting.energy import Energy, FreeVertices, minimise_energy
 from polyfold_grounding.fitting.evidence import Evidence
 
@@ -26,12 +28,6 @@ _FREE = 8
 _DELTA, _FAR_DELTA = 4.0, 12.0
 """Distance [px at scale 1] beyond which a contour sample counts linearly: at the end, and before that, when far
 samples are still to pull the free vertices out of shallow minima."""
-
-_SHARP = 30.0
-"""Least turn of the outline at a protruding corner [deg]."""
-
-_ROUNDING = 15.0
-"""How far outside a rounded corner a vertex may end up [px at scale 1]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,35 +71,8 @@ def fit_flat(template: Template, evidence: Evidence, rotations: int = 24) -> lis
         vertices, _ = minimise_energy(far_sighted, FreeVertices(), fit.vertices, 40)
         vertices, energy = minimise_energy(objective, FreeVertices(), vertices, 40)
         free.append(FlatFit(on_contour(template, vertices, evidence), energy, fit.heading))
-    return sorted(free, key=lambda fit: fit.energy)
-
-
-def on_contour(template: Template, vertices: Floats, evidence: Evidence) -> Floats:
-    """Vertices drawn onto the nearby contour: real corners are rounded, and the best polygon's lie outside of them.
-
-    A protruding corner goes to the point that protrudes most, any other to the nearest one. Only points along the same
-    stretch of the contour count: the corner of the other trouser leg may be near, too.
-    """
-    before, after = np.roll(vertices, 1, axis=0) - vertices, np.roll(vertices, -1, axis=0) - vertices
-    before, after = (arm / np.maximum(np.linalg.norm(arm, axis=1, keepdims=True), 1e-9) for arm in (before, after))
-    outward = -(before + after) / np.maximum(np.linalg.norm(before + after, axis=1, keepdims=True), 1e-9)
-    sharp = (before * after).sum(1) > -np.cos(np.radians(_SHARP))
-    turns = after[:, 0] * before[:, 1] - after[:, 1] * before[:, 0]
-    convex = turns * polygon_area(vertices) > 0
-    offsets = evidence.contour[None] - vertices[:, None]
-    distance = np.linalg.norm(offsets, axis=2)
-    reach = _ROUNDING * evidence.scale
-    along = (offsets * outward[:, None]).sum(2)
-    merit = np.where(
-        (sharp & convex)[:, None], along - 0.5 * np.sqrt(np.maximum(distance**2 - along**2, 0.0)), -distance
-    )
-    count = len(evidence.contour)
-    steps = np.abs(np.arange(count)[None] - distance.argmin(1)[:, None])
-    spacing = np.hypot(*(evidence.contour[1] - evidence.contour[0]))
-    here = (distance < reach) & (np.minimum(steps, count - steps) * spacing < 1.5 * reach)
-    chosen = np.where(here, merit, -np.inf).argmax(1)
-    moved = (distance.min(1) < reach) & ~np.isin(template.names, template.covered)
-    return np.where(moved[:, None], evidence.contour[chosen], vertices)
+    best, *others = sorted(free, key=lambda fit: fit.energy)
+    return [replace(best, vertices=with_blunt_corners(template, best.vertices, evidence)), *others]
 
 
 def spread_starts(template: Template, evidence: Evidence, rotations: int) -> list[Start]:

@@ -1,4 +1,4 @@
-"""Following a garment from fold to fold: the skeleton and earlier folds are frozen, five numbers are refitted.
+"""Following a garment from fold to fold: the skeleton and earlier folds are frozen, six numbers are refitted.
 
 The paper refits all parameters; freezing them, and registering rigidly first, is this implementation's choice, because
 freeing them made it worse with every fold.
@@ -24,8 +24,16 @@ Floats = NDArray[np.float64]
 
 _WEIGHT = 3.0
 
-_SIGMAS = np.array([15.0, 15.0, np.radians(8.0), 3.0, np.radians(1.5)])
-"""How far a fold usually moves the garment, and misses its line: shift [px at scale 1], turn, offset [px], turn."""
+_SIGMAS = np.array([15.0, 15.0, np.radians(8.0), 1.5, np.radians(1.5), 4.0])
+"""How far a fold usually moves the garment, misses its line, and rounds its crease: shift [px at scale 1], turn, offset
+[px at scale 1], turn, half the allowance [px at scale 1]. A flap is laid down where it was meant to, while the crease
+ends where the cloth lets it."""
+
+_ALL = (0, 1, 2, 3, 4, 5)
+
+_TIGHT = 0.5 * np.pi - 2.0
+"""Allowance of a tight fold, in thicknesses of the bent packet: its plies are half rings, π/2 long on average, and the
+outermost stands out by one thickness on the way there and back."""
 
 _DAMPING = Damping(most=1e6, floor=1e-9)
 
@@ -41,7 +49,8 @@ class Refit:
     """One explanation of the silhouette by a moved model.
 
     Attributes:
-        parameters: shift [px], turn [rad], and the last line's offset [px] and turn [rad], shape (5,).
+        parameters: shift [px], turn [rad], the last line's offset [px] and turn [rad], and half its allowance
+            [px], shape (6,).
         energy: contour distance plus priors, without unit.
         chamfer: Chamfer distance [px].
     """
@@ -71,10 +80,16 @@ class Silhouette:
         evidence: the picture to explain.
         seen: the contour that was seen before the fold [px], shape (N, 2): better than the model's own outline, whose
             edges are straight. None takes that outline.
+        thickness: of one layer of the model [px].
     """
 
     def __init__(
-        self, model: FoldedModel, line: FoldLine | None, evidence: Evidence, seen: Floats | None = None
+        self,
+        model: FoldedModel,
+        line: FoldLine | None,
+        evidence: Evidence,
+        seen: Floats | None = None,
+        thickness: float = 0.0,
     ) -> None:
         self._model, self._line, self._evidence = model, line, evidence
         after = model.fold(line).outline() if line else model.outline()
@@ -82,11 +97,12 @@ class Silhouette:
         self._boundary = resample(self._outline, 240)
         self.centre = (after.min(0) + after.max(0)) / 2
         if line is None:
-            self._pivot, self._angle, self._half = self.centre, 0.0, 0.0
+            self._pivot, self._angle, self._half, self._inset = self.centre, 0.0, 0.0, 0.0
         else:
             start, end = np.array(line.start), np.array(line.end)
             self._pivot, self._angle = (start + end) / 2, float(np.arctan2(*(end - start)[::-1]))
             self._half = line.length / 2
+            self._inset = 0.5 * _TIGHT * model.plies(line) * thickness
 
     @property
     def folds(self) -> bool:
@@ -96,19 +112,19 @@ class Silhouette:
     @property
     def rest(self) -> Floats:
         """Parameters of the model as planned."""
-        return np.array([0.0, 0.0, 0.0, 0.0 if self._line else _FAR, 0.0])
+        return np.array([0.0, 0.0, 0.0, 0.0 if self._line else _FAR, 0.0, self._inset])
 
     def minimise(
         self, start: Floats, free: tuple[int, ...], delta: float, anchored: bool = True, iterations: int = 25
     ) -> Refit:
         """Levenberg-Marquardt over the ``free`` parameters; ``anchored`` keeps the priors on the garment's motion."""
         scale = self._evidence.scale
-        sigmas = _SIGMAS * np.array([scale, scale, 1.0, scale, 1.0])
+        sigmas = _SIGMAS * np.array([scale, scale, 1.0, scale, 1.0, scale])
         precision = 1.0 / sigmas**2
         if not anchored:
             precision[:3] = 0.0
         index = np.array(free)
-        precision = np.where(np.isin(np.arange(5), index), precision, 0.0)
+        precision = np.where(np.isin(np.arange(6), index), precision, 0.0)
 
         def completed(chosen: Floats) -> Floats:
             parameters = start.copy()
@@ -125,7 +141,7 @@ class Silhouette:
         """The model, folded along the refitted line and moved."""
         model = self._model
         if self._line is not None:
-            model = model.fold(self.line(parameters))
+            model = model.fold(self.line(parameters), 2.0 * float(parameters[5]), self._line)
         return model.transformed(float(parameters[2]), parameters[:2], self.centre)
 
     def can_fold(self, parameters: Floats) -> bool:
@@ -158,9 +174,10 @@ class Silhouette:
             delta * evidence.scale,
         )
         weight = _WEIGHT / evidence.scale**2
-        prior = precision * parameters
+        unusual = parameters - np.array([0.0, 0.0, 0.0, 0.0, 0.0, self._inset])
+        prior = precision * unusual
         return _FoldTerms(
-            weight * cost + 0.5 * float(prior @ parameters),
+            weight * cost + 0.5 * float(prior @ unusual),
             weight * gradient + prior,
             weight * hessian + np.diag(precision),
             chamfer,
@@ -175,12 +192,12 @@ def _simplified(contour: Floats) -> Floats:
 
 
 def refit_fold(silhouette: Silhouette) -> list[Refit]:
-    """Explanations of the picture after a fold, best first: rigid registration, then six starts for five numbers."""
+    """Explanations of the picture after a fold, best first: rigid registration, then six starts for six numbers."""
     rigid = silhouette.minimise(silhouette.rest, (0, 1, 2), 15.0)
     starts = [silhouette.rest]
     for offset, turn in _SPREAD:
-        starts.append(rigid.parameters + np.array([0.0, 0.0, 0.0, offset, np.radians(turn)]))
-    found = [silhouette.minimise(start, (0, 1, 2, 3, 4), 4.0) for start in starts]
+        starts.append(rigid.parameters + np.array([0.0, 0.0, 0.0, offset, np.radians(turn), 0.0]))
+    found = [silhouette.minimise(start, _ALL, 4.0) for start in starts]
     return sorted(found, key=lambda refit: refit.energy)
 
 
@@ -189,9 +206,9 @@ def register(silhouette: Silhouette, evidence: Evidence, rotations: int = 24) ->
     shift = (evidence.contour.min(0) + evidence.contour.max(0)) / 2 - silhouette.centre
     coarse = []
     for turn in np.arange(rotations) * 2 * np.pi / rotations:
-        start = silhouette.rest + np.array([*shift, turn, 0.0, 0.0])
+        start = silhouette.rest + np.array([*shift, turn, 0.0, 0.0, 0.0])
         coarse.append(silhouette.minimise(start, (0, 1, 2), 15.0, anchored=False, iterations=6))
     coarse.sort(key=lambda refit: refit.energy)
-    free = (0, 1, 2, 3, 4) if silhouette.folds else (0, 1, 2)
+    free = _ALL if silhouette.folds else (0, 1, 2)
     fine = [silhouette.minimise(refit.parameters, free, 4.0, anchored=False) for refit in coarse[:4]]
     return sorted(fine, key=lambda refit: refit.energy)

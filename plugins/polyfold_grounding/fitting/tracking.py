@@ -75,7 +75,12 @@ def _named_by_pose(template: Template, vertices: Floats) -> Floats:
 
 
 def next_model(
-    model: FoldedModel, seen: Floats, line: FoldLine | None, evidence: Evidence, displaced: float
+    model: FoldedModel,
+    seen: Floats,
+    line: FoldLine | None,
+    evidence: Evidence,
+    displaced: float,
+    thickness: float = 0.0,
 ) -> Tracked:
     """Follow a model to the next picture, after a fold along ``line`` or after nothing was folded.
 
@@ -85,10 +90,11 @@ def next_model(
         line: the fold line [px], in the picture before.
         evidence: the picture now.
         displaced: Chamfer distance [px at scale 1] above which all rotations are searched.
+        thickness: of one layer of the model [px].
     """
-    found = _as_planned(model, seen, line, evidence)
+    found = _as_planned(model, seen, line, evidence, thickness)
     if found.best.chamfer > _UNREMARKABLE * evidence.scale:
-        found = min([found, *_with_a_fold_undone(model, seen, line, evidence, found)], key=_judged)
+        found = min([found, *_with_a_fold_undone(model, seen, line, evidence, found, thickness)], key=_judged)
     if found.best.chamfer > displaced * evidence.scale:
         found = _anywhere(found, evidence)
     notes = found.notes
@@ -114,27 +120,35 @@ def _judged(explanation: _Explanation) -> float:
     return explanation.best.chamfer / explanation.share
 
 
-def _as_planned(model: FoldedModel, seen: Floats, line: FoldLine | None, evidence: Evidence) -> _Explanation:
+def _as_planned(
+    model: FoldedModel, seen: Floats, line: FoldLine | None, evidence: Evidence, thickness: float
+) -> _Explanation:
     try:
-        return _explain(Silhouette(model, line, evidence, seen))
+        return _explain(Silhouette(model, line, evidence, seen, thickness))
     except PlanError as problem:
         still = _explain(Silhouette(model, None, evidence, seen))
         return replace(still, notes=(f"no fold was added to the model: {problem}",))
 
 
 def _with_a_fold_undone(
-    model: FoldedModel, seen: Floats, line: FoldLine | None, evidence: Evidence, planned: _Explanation
+    model: FoldedModel,
+    seen: Floats,
+    line: FoldLine | None,
+    evidence: Evidence,
+    planned: _Explanation,
+    thickness: float,
 ) -> Iterator[_Explanation]:
     """What it would be if the last fold had not taken effect, or an earlier one had come undone."""
     if planned.silhouette.folds:
         note = "the last fold did not take effect; the garment looks as it did before it"
         yield replace(_explain(Silhouette(model, None, evidence, seen)), notes=(note,), share=_BETTER)
     for number in range(1, len(model.folds) + 1):
-        others = model.folds[: number - 1] + model.folds[number:]
-        opened = FoldedModel(model.rest, model.names, model.descriptions, others, model.kind)
+        opened = model.without(number)
         note = f"fold {number} has come undone; later creases are renumbered"
         try:
-            yield replace(_explain(Silhouette(opened, line, evidence)), notes=(note,), share=_MUCH_BETTER)
+            yield replace(
+                _explain(Silhouette(opened, line, evidence, None, thickness)), notes=(note,), share=_MUCH_BETTER
+            )
         except PlanError:
             continue
 
