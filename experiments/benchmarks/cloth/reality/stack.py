@@ -1,0 +1,63 @@
+"""Separate plies on the table: how high, how calm and how steady is a pile of them?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from experiments.benchmarks.cloth.reality.bench import Cloth, Fabric
+from experiments.benchmarks.cloth.reality.rows import Row, millimetres
+from experiments.benchmarks.cloth.reality.sheets import lifted, pile, square
+
+SIDE = 0.15
+"""Of the squares [m]."""
+PLIES = (2, 4, 8, 16)
+SPACED = 1.5
+"""The plies start so many thicknesses apart."""
+SETTLING, RESTING = 1.5, 5.0
+"""Time to come to rest, and to lie and be watched [s]."""
+
+
+@dataclass(frozen=True)
+class Pile:
+    """A pile at rest.
+
+    Attributes:
+        height: from the table to the top of the upper ply [m].
+        speed: vertical, root mean square over particles and time [m/s].
+        creep: mean distance that particles come in five seconds [m].
+    """
+
+    height: float
+    speed: float
+    creep: float
+
+
+def lay(fabric: Fabric, plies: int, edge_length: float) -> Pile:
+    """Let a pile of squares down and watch it lie."""
+    sheet = square(SIDE, edge_length)
+    levels = fabric.thickness * (0.5 + SPACED * np.arange(plies))
+    cloth = Cloth(pile(sheet, plies), fabric, np.vstack([lifted(sheet.vertices, level) for level in levels]))
+    cloth.wait(SETTLING)
+    before = cloth.positions()
+    squares: list[float] = []
+    cloth.wait(RESTING, lambda: squares.append(float((cloth.velocities()[:, 2] ** 2).mean())), 0.02)
+    after = cloth.positions()
+    top = after[-len(sheet.vertices) :, 2].mean() + fabric.thickness / 2
+    return Pile(float(top), float(np.sqrt(np.mean(squares))), float(np.linalg.norm(after - before, axis=1).mean()))
+
+
+def stack_rows(fabric: Fabric, edge_length: float) -> Iterator[Row]:
+    """Height per ply, vertical speed and creep of piles of 2 to 16 plies."""
+    for plies in PLIES:
+        result = lay(fabric, plies, edge_length)
+        yield Row(
+            "stack",
+            fabric.name,
+            f"{plies} plies: height per ply, vertical speed RMS, creep in 5 s",
+            f"{millimetres(fabric.thickness, 2)} (thickness), 0 mm/s, 0 mm",
+            f"{millimetres(result.height / plies, 2)}, {1000 * result.speed:.2f} mm/s, {millimetres(result.creep, 2)}",
+            f"{plies} plies",
+        )
