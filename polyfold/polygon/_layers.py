@@ -134,7 +134,8 @@ def fold_facets(facets: Sequence[Facet], line: FoldLine, number: int, allowance:
         # The strip between the two cuts belongs to both sides; a vertex in it, only to its own.
         lifted = tuple(_without_names(piece, line.distance(piece.polygon) < 0.0) for piece in lifted)
         remaining = tuple(_without_names(piece, line.distance(piece.polygon) > 0.0) for piece in remaining)
-    lifted, remaining = _name_crease(lifted, above, remaining, below, number)
+    # Each side by itself: across a corner, the two cuts are of different lengths.
+    lifted, remaining = _name_crease(lifted, above, number), _name_crease(remaining, below, number)
     top = max(facet.layer for facet in remaining) + 1 + max(facet.layer for facet in lifted)
     return (*remaining, *(facet.turned_over(line, top - facet.layer) for facet in lifted))
 
@@ -171,17 +172,14 @@ def _without_names(piece: Facet, corners: NDArray[np.bool_]) -> Facet:
     return replace(piece, names=names)
 
 
-def _name_crease(
-    lifted: Sequence[Facet], above: FoldLine, remaining: Sequence[Facet], below: FoldLine, number: int
-) -> tuple[list[Facet], list[Facet]]:
-    """Name the outermost ends of the new crease in every piece that reaches them, cut along ``above`` or ``below``."""
-    direction = np.subtract(above.end, above.start) / above.length
-    pieces, lines = [*lifted, *remaining], [above] * len(lifted) + [below] * len(remaining)
-    along = [
-        np.where(_on_crease(piece, line), (piece.polygon - np.asarray(line.start)) @ direction, np.nan)
-        for piece, line in zip(pieces, lines, strict=True)
-    ]
+def _name_crease(pieces: Sequence[Facet], line: FoldLine, number: int) -> list[Facet]:
+    """Name the outermost ends of the new crease, cut along ``line``, in every piece of one side that reaches them."""
+    direction = np.subtract(line.end, line.start) / line.length
+    start = np.asarray(line.start)
+    along = [np.where(_on_crease(piece, line), (piece.polygon - start) @ direction, np.nan) for piece in pieces]
     reach = np.concatenate(along)
+    if not np.isfinite(reach).any():
+        return list(pieces)
     first, last = np.nanmin(reach), np.nanmax(reach)
     named = []
     for piece, position in zip(pieces, along, strict=True):
@@ -192,7 +190,7 @@ def _name_crease(
                 if abs(position[nearest] - target) <= _SAME_END:
                     names[nearest] = (*names[nearest], end_name)
         named.append(replace(piece, names=tuple(names)))
-    return named[: len(lifted)], named[len(lifted) :]
+    return named
 
 
 def _on_crease(piece: Facet, line: FoldLine) -> NDArray[np.bool_]:
