@@ -28,7 +28,7 @@ TOP_SPEED = 5.0
 """Particles are never faster than this [m/s]."""
 MOVING, SETTLING = 8.0, 60.0
 """Velocity damping while a gripper moves and while the cloth comes to rest [1/s]."""
-REST_SPEED, LONGEST_SETTLING = 0.003, 1.5
+REST_SPEED, LONGEST_SETTLING = 0.003, 1.0
 """RMS speed that counts as rest [m/s], and how long to wait for it [s]."""
 
 

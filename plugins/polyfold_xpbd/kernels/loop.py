@@ -73,7 +73,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                 old_second[:count], old_side[:count] = second[:count], side[:count]
                 old_over[:count], old_load[:count] = over[:count], load[:count]
                 clock[3] = list_vertex_pairs(
-                    x, v, horizon, thickness + slack, cell, corners, thickness, vertex_starts, vertex_stops,
+                    x, v, normals, horizon, thickness + slack, cell, corners, thickness, vertex_starts, vertex_stops,
                     old_second, old_side, old_over, old_load, first, second, side, over, load,
                 )  # fmt: skip
                 if clock[3] < 0:

@@ -19,6 +19,11 @@ from polyfold_xpbd.kernels.vectors import compiled
 
 BENT, FLAT = 0.95, 0.98
 """Length of a mean normal below which a sheet counts as bent, and above which it is flat again."""
+COVERED, UNBENT, BEHIND = -0.02, 0.8, 0.7
+"""A ply covers what is behind it where a vertex is this far inside one of its triangles and faces it this squarely.
+
+Behind is what is farther than it by this many thicknesses.
+"""
 CELL = 0.4
 """Side of a cell that boxes are sorted into, in edge lengths."""
 
@@ -65,10 +70,12 @@ def _frames(x, v, corners, frames):
 
 @compiled
 def list_vertex_pairs(
-    x, v, horizon, reach, edge_length, corners, thickness,
+    x, v, normals, horizon, reach, edge_length, corners, thickness,
     starts, stops, old_second, old_side, old_over, old_load, first, second, side, over, load,
 ):  # fmt: skip
     """List vertices and triangles that come within ``reach`` [m] of each other, from the table upwards.
+
+    What lies behind another ply is left out: the vertex can't get there before that ply does.
 
     Returns:
         The number of pairs; -1 if there is no room for them.
@@ -78,7 +85,8 @@ def list_vertex_pairs(
     start, members, in_order, columns, rows, grid = sort_by_cell(boxes, cell)
     frames = np.empty((corners.shape[0], 12), np.float32)
     _frames(x, v, corners, frames)
-    one, slope = np.float32(1.0), np.float32(1.3) / edge_length
+    zero, one, slope = np.float32(0.0), np.float32(1.0), np.float32(1.3) / edge_length
+    away, upper = np.empty(ROOM, np.float32), np.empty(ROOM, np.bool_)
     near = np.empty(ROOM, np.int32)
     box = np.empty(6, np.float32)
     new_starts, new_stops = np.zeros(x.shape[0], np.int32), np.zeros(x.shape[0], np.int32)
@@ -91,6 +99,7 @@ def list_vertex_pairs(
         found = gather(box, cell, start, members, in_order, columns, rows, grid, near)
         if pairs + found > first.shape[0]:
             return -1
+        kept, cover_above, cover_below = 0, np.float32(1.0), np.float32(1.0)
         for n in range(found):
             t = near[n]
             a = corners[t, 0]
@@ -109,9 +118,24 @@ def list_vertex_pairs(
             margin = slope * (reach + np.sqrt(mx * mx + my * my + mz * mz))
             if min(beta, min(gamma, one - beta - gamma)) < -margin:
                 continue
-            first[pairs], second[pairs], side[pairs], over[pairs] = i, t, np.int8(0), np.int8(0)
+            near[kept] = t
+            away[kept] = height
+            # Which way a triangle is from here, by its own normal turned to this vertex's.
+            facing = frames[t, 0] * normals[i, 0] + frames[t, 1] * normals[i, 1] + frames[t, 2] * normals[i, 2]
+            above = (height < zero) == (facing > zero)
+            upper[kept] = above
+            if min(beta, min(gamma, one - beta - gamma)) > np.float32(COVERED) and abs(facing) > np.float32(UNBENT):
+                if above:
+                    cover_above = min(cover_above, abs(height) + abs(rise))
+                else:
+                    cover_below = min(cover_below, abs(height) + abs(rise))
+            kept += 1
+        for n in range(kept):
+            if abs(away[n]) > (cover_above if upper[n] else cover_below) + np.float32(BEHIND) * thickness:
+                continue
+            first[pairs], second[pairs], side[pairs], over[pairs] = i, near[n], np.int8(0), np.int8(0)
             for m in range(4):
-                load[pairs, m] = np.float32(0.0)
+                load[pairs, m] = zero
             pairs += 1
         for k in range(starts[i], stops[i]):
             if old_over[k] != 0:
