@@ -22,6 +22,8 @@ WIDTH = 0.025
 """Of the strip [m], as the standards have it."""
 WIDE = 0.1
 """Of a wider strip [m]."""
+REST = 2.0
+"""Time that a strip gets to come to rest [s]."""
 COARSEST = 3.0
 """An overhang has at least so many edges."""
 BAR = 0.08
@@ -66,7 +68,7 @@ def hang(fabric: Fabric, overhang: float, edge_length: float, along: str = "weft
     cloth = Cloth(mesh, fabric, lifted(mesh.vertices, BAR))
     cloth.pin(np.flatnonzero(np.abs(distance) < 1e-3 * edge_length))
     tips = np.abs(distance) > overhang - 1e-3 * edge_length
-    speed = cloth.rest(2.0)
+    speed = cloth.rest(REST)
     now = cloth.positions()[tips]
     reach, drop = np.abs(now[:, 1 if along == "warp" else 0]).mean(), BAR - now[:, 2].mean()
     return Hanging(overhang, float(np.arctan2(drop, reach)), float(drop), speed)
