@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -22,7 +23,7 @@ WIDTH = 0.025
 """Of the strip [m], as the standards have it."""
 WIDE = 0.1
 """Of a wider strip [m]."""
-REST = 2.0
+REST = 6.0
 """Time that a strip gets to come to rest [s]."""
 COARSEST = 3.0
 """An overhang has at least so many edges."""
@@ -59,6 +60,7 @@ def overhang_for(bending_length: float, edge_length: float) -> float:
     return max(2 * bending_length, COARSEST * edge_length)
 
 
+@lru_cache
 def hang(fabric: Fabric, overhang: float, edge_length: float, along: str = "weft", width: float = WIDTH) -> Hanging:
     """Lay a strip over the bar, cut along the weft (x) or the warp (y), and let it come to rest."""
     mesh = strip(2 * overhang, width, edge_length, (0.0,))

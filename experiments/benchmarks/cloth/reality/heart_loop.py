@@ -38,7 +38,7 @@ def hang_loop(fabric: Fabric, length: float, edge_length: float) -> tuple[float,
     start = heart_loop(length, STIFFER * fabric.bending_length_weft, fabric.thickness)
     cloth = Cloth(mesh, fabric, _bent(mesh.vertices, start, length, fabric.thickness))
     cloth.pin(np.flatnonzero(np.abs(along) > pinned - 1e-3 * edge_length))
-    speed = cloth.rest(3.0)
+    speed = cloth.rest(6.0)
     middle = np.abs(along) < 0.75 * edge_length
     return CLAMP - _lowest(along[middle], cloth.positions()[middle, 2]), speed
 
