@@ -18,6 +18,8 @@ SIDE = 0.15
 PLIES = (2, 4, 8, 16)
 SPACED = 1.5
 """The plies start so many thicknesses apart."""
+ASIDE = 0.004
+"""Each ply lies at most so far beside its place, both ways [m]: exactly in line, every vertex would lie on a vertex."""
 SETTLING, RESTING = 1.5, 5.0
 """Time to come to rest, and to lie and be watched [s]."""
 WINDOW = 0.1
@@ -45,7 +47,9 @@ def lay(fabric: Fabric, plies: int, edge_length: float) -> Pile:
     """Let a pile of squares down and watch it lie."""
     sheet = square(SIDE, edge_length)
     levels = fabric.thickness * (0.5 + SPACED * np.arange(plies))
-    cloth = Cloth(pile(sheet, plies), fabric, np.vstack([lifted(sheet.vertices, level) for level in levels]))
+    aside = np.random.default_rng(plies).uniform(-ASIDE, ASIDE, (plies, 2))
+    laid = [lifted(sheet.vertices + shift, level) for shift, level in zip(aside, levels, strict=True)]
+    cloth = Cloth(pile(sheet, plies), fabric, np.vstack(laid))
     cloth.wait(SETTLING)
     before = cloth.positions()
     speeds, heights = [], [before[:, 2]]
