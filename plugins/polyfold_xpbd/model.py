@@ -110,7 +110,8 @@ def _hinges(
     sheet = area(rest[triangles[:, 0]], rest[triangles[:, 1]], rest[triangles[:, 2]]).sum()
     area_per_particle = sheet / len(rest)
     around = area(x0, x1, x2) + area(x0, x1, x3)
-    rigidity = _rigidity(x1 - x0, fabric)
+    bent = (stencil[:, :, None] * rest[hinges] ** 2 / 2).sum(axis=1)
+    rigidity = _rigidity(x1 - x0, bent**2 / around[:, None], sheet, fabric)
     root = np.sqrt(1.0 / around * rigidity / area_per_particle)
     # Bent to a curvature, a stencil is as long as the curvature times the area of its two triangles.
     sharpest = 2.0 * np.hypot(*(x1 - x0).T) / around
@@ -132,13 +133,22 @@ def _fastest(hinges: NDArray[np.int64], weights: NDArray[np.float64], count: int
     return float(np.linalg.norm(stencils @ shape))
 
 
-def _rigidity(along: NDArray[np.float64], fabric: Fabric) -> NDArray[np.float64]:
-    """Bending rigidity per weight times gravity [m⁴/s²] of hinges that run ``along``, shape (H, 2): g times c³.
+def _rigidity(
+    along: NDArray[np.float64], shares: NDArray[np.float64], sheet: float, fabric: Fabric
+) -> NDArray[np.float64]:
+    """Bending rigidity per weight times gravity [m⁴/s²] of hinges, shape (H,): about g times c³.
 
-    A hinge bends the sheet across itself. In a mesh of even triangles, hinges of three directions share every bend;
-    with these weights, strips along warp and weft get their own bending lengths.
+    Hinges of three directions share every bend, and at the sheet's rim some are missing. How much of the rigidity a
+    direction gets is therefore such that this very sheet, rolled up along weft or warp, stores ½ B κ² in its area.
+
+    Args:
+        along: from one end of each hinge to the other [m], shape (H, 2).
+        shares: what each stores per rigidity if the sheet has curvature 1 along x, and along y, shape (H, 2).
+        sheet: area [m²].
+        fabric: warp runs along y, weft along x.
     """
-    warp, weft = GRAVITY * fabric.bending_length_warp**3, GRAVITY * fabric.bending_length_weft**3
-    across = along[:, 0] ** 2 / (along**2).sum(axis=1)
-    lean = 2.0 * across - 1.0
-    return np.maximum((warp + weft) / 2 + 0.75 * (warp - weft) * lean, 0.1 * min(warp, weft))
+    weft, warp = GRAVITY * fabric.bending_length_weft**3, GRAVITY * fabric.bending_length_warp**3
+    lean = (along[:, 0] ** 2 - along[:, 1] ** 2) / (along**2).sum(axis=1)
+    directions = np.stack([np.ones(len(lean)), lean])
+    parts = np.linalg.lstsq((directions @ shares).T, sheet * np.array([weft, warp]), rcond=1e-3)[0]
+    return np.maximum(parts @ directions, 0.1 * min(warp, weft))

@@ -7,7 +7,7 @@ import pytest
 
 from experiments.benchmarks.cloth.measures import crossing_edges
 from experiments.benchmarks.cloth.reality.__main__ import main
-from experiments.benchmarks.cloth.reality.bench import FABRICS, Cloth, elastic
+from experiments.benchmarks.cloth.reality.bench import Cloth, elastic, fabric_named
 from experiments.benchmarks.cloth.reality.cantilever import hang
 from experiments.benchmarks.cloth.reality.drape import DISC, PEDESTAL, drape_coefficient, shadow
 from experiments.benchmarks.cloth.reality.elastica import (
@@ -86,7 +86,7 @@ def test_a_strip_has_vertices_where_it_is_clamped_and_can_be_cut_across():
 
 
 def test_plies_of_a_pile_are_separate_and_keep_apart():
-    fabric = FABRICS["standard"]
+    fabric = fabric_named("terry")
     sheet = square(0.1, 0.02)
     mesh = pile(sheet, 3)
     count = len(sheet.vertices)
@@ -101,7 +101,7 @@ def test_plies_of_a_pile_are_separate_and_keep_apart():
 
 def test_pinned_particles_stay_and_go_where_they_are_carried():
     mesh = square(0.1, 0.02)
-    cloth = Cloth(mesh, FABRICS["standard"], lifted(mesh.vertices, 0.05))
+    cloth = Cloth(mesh, fabric_named("terry"), lifted(mesh.vertices, 0.05))
     corner = np.array([int(mesh.vertices.sum(axis=1).argmin())])
     start = cloth.positions()[corner]
     cloth.pin(corner)
@@ -114,7 +114,7 @@ def test_pinned_particles_stay_and_go_where_they_are_carried():
 
 
 def test_a_softer_strip_hangs_lower():
-    fabric = FABRICS["standard"]
+    fabric = fabric_named("terry")
     stiff, soft = (hang(elastic(fabric, length), 0.0375, 0.0125) for length in (0.015, 0.008))
     assert soft.drop > stiff.drop > 0
     assert soft.bending_length < stiff.bending_length

@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeVar
 
-from experiments.benchmarks.cloth.reality.bench import FABRICS, Fabric
+from experiments.benchmarks.cloth.reality.bench import FABRICS, fabric_named
 from experiments.benchmarks.cloth.reality.cantilever import cantilever_rows
 from experiments.benchmarks.cloth.reality.convergence import convergence_rows
 from experiments.benchmarks.cloth.reality.drape import drape_rows
@@ -19,6 +19,7 @@ from experiments.benchmarks.cloth.reality.stack import stack_rows
 from experiments.benchmarks.cloth.reality.strip_fold import strip_fold_rows
 from experiments.benchmarks.cloth.rgbench.published import published_rows
 from polyfold.errors import PolyfoldError
+from polyfold.garments import Fabric
 
 Chosen = TypeVar("Chosen")
 
@@ -37,11 +38,12 @@ TESTS: dict[str, Test] = {
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print one row per figure, published beside ours."""
     parser = argparse.ArgumentParser(prog="python -m experiments.benchmarks.cloth.reality", description=__doc__)
-    parser.add_argument("--fabric", default="standard", help=f"{', '.join(FABRICS)}; several with commas")
+    parser.add_argument("--fabric", default="poplin", help=f"of {', '.join(FABRICS)}; several with commas")
     parser.add_argument("--only", default=",".join(TESTS), help="tests, with commas (default: all: %(default)s)")
     parser.add_argument("--edge-length", type=float, default=0.0125, help="of the meshes [m] (default: 0.0125)")
     options = parser.parse_args(arguments)
-    fabrics = [_chosen(parser, FABRICS, name) for name in options.fabric.split(",")]
+    known = {name: name for name in FABRICS}
+    fabrics = [fabric_named(_chosen(parser, known, name)) for name in options.fabric.split(",")]
     tests = [(name, _chosen(parser, TESTS, name)) for name in options.only.split(",")]
     print("| test | fabric | quantity | published | ours | n |\n|---|---|---|---|---|---|")
     printed: set[Row] = set()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from polyfold_xpbd.solver import MOVING, Solver
 
 from polyfold import plugins
+from polyfold.config import ComponentSpec
 from polyfold.errors import SimulationError
-from polyfold.garments import Garment, Mesh
+from polyfold.garments import Fabric, Garment, Mesh
 
 Floats = NDArray[np.float64]
 
@@ -23,51 +24,26 @@ RESTLESS = 0.03
 Indices = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class Fabric:
-    """What a sample is made of.
+FABRICS = ("jersey", "poplin", "denim", "terry", "felt")
+"""The bundled fabrics."""
 
-    Attributes:
-        name: as in the table.
-        thickness: of one ply [m].
-        weight: per area [kg/m²].
-        bending_length_warp, bending_length_weft: Peirce's bending length along x and y of the flat mesh [m].
-        cloth_friction, table_friction: Coulomb friction.
-        crease_yield: curvature from which a bend stays [1/m]; infinite for an elastic fabric.
-        crease_set: share of the curvature beyond the yield that stays.
+
+def fabric_named(name: str) -> Fabric:
+    """A registered fabric with its own constants.
+
+    Raises:
+        PluginError: if there is none of that name.
     """
-
-    name: str
-    thickness: float
-    weight: float
-    bending_length_warp: float
-    bending_length_weft: float
-    cloth_friction: float
-    table_friction: float
-    crease_yield: float = float("inf")
-    crease_set: float = 0.0
-
-    @property
-    def bending_length(self) -> float:
-        """Mean of warp and weft [m], for a solver that bends alike both ways."""
-        return (self.bending_length_warp + self.bending_length_weft) / 2
-
-
-FABRICS = {
-    fabric.name: fabric
-    for fabric in (
-        Fabric("standard", 0.0035, 0.15, 0.010, 0.010, 0.6, 0.8),
-        Fabric("jersey", 0.0008, 0.16, 0.011, 0.009, 0.6, 0.6),
-        Fabric("poplin", 0.0008, 0.12, 0.019, 0.016, 0.5, 0.5),
-        Fabric("denim", 0.0010, 0.33, 0.022, 0.018, 0.6, 0.6),
-    )
-}
-"""Samples to test. ``standard`` is the simulator's own default; the others have plausible constants."""
+    return plugins.make_fabric(ComponentSpec(name=name), "square")
 
 
 def elastic(fabric: Fabric, bending_length: float | None = None) -> Fabric:
-    """The same fabric without set, and alike both ways with another bending length [m] if one is given."""
-    fabric = replace(fabric, crease_yield=float("inf"), crease_set=0.0)
+    """The same fabric without set, and alike both ways with another bending length [m] if one is given.
+
+    Without a share that stays, the solver bends elastically at any curvature: the limit that its meshes put on the
+    elastic range (half of what they can bend) then says nothing.
+    """
+    fabric = replace(fabric, crease_yield=Fabric.LIMITS["crease_yield"][1], crease_set=0.0)
     if bending_length is None:
         return fabric
     return replace(fabric, bending_length_warp=bending_length, bending_length_weft=bending_length)
@@ -82,7 +58,7 @@ class Cloth:
         positions: where its particles are at first [m], shape (N, 3).
     """
 
-    def __init__(self, mesh: Mesh, fabric: Any, positions: Floats) -> None:
+    def __init__(self, mesh: Mesh, fabric: Fabric, positions: Floats) -> None:
         self._solver = Solver(mesh, np.asarray(positions, float)[:, :2], fabric)
         self._held = np.zeros(0, np.int64)
         self._place(positions)
@@ -103,8 +79,9 @@ class Cloth:
     def pin(self, particles: Indices) -> None:
         """Hold these particles, and only these, where they are."""
         self._held = np.asarray(particles, np.int64)
-        self._solver._mobility[:] = 1.0
-        self._solver._mobility[self._held] = 0.0
+        # Setting a state lets go of all that was held before.
+        self._solver.set_state(self.positions(), self.velocities(), self._solver.memory())
+        self._solver.pin(self._held)
 
     def wait(self, seconds: float, watch: Callable[[], None] | None = None, every: float = 0.02) -> None:
         """Let time pass; ``watch`` is called every so many seconds.
@@ -142,13 +119,11 @@ class Cloth:
         self._solver.set_state(np.asarray(positions, float), np.zeros((len(positions), 3)), {})
 
 
-def simulator(fabric: Fabric) -> Any:
-    """The simulator that agents fold in, with cloth of this fabric."""
-    constants = ("thickness", "bending_length", "cloth_friction", "table_friction")
-    return plugins.create("simulators", "xpbd", {name: getattr(fabric, name) for name in constants})
+def simulator() -> Any:
+    """The simulator that agents fold in; the cloth's fabric comes with the garment."""
+    return plugins.create("simulators", "xpbd")
 
 
 def garment(kind: str, seed: int, edge_length: float, fabric: Fabric) -> Garment:
     """A seeded garment of a kind, meshed at about ``edge_length`` [m], of this fabric."""
-    del fabric  # the simulator holds it
-    return plugins.create("garments", kind).generate(seed, edge_length)
+    return replace(plugins.generate_garment(kind, seed, edge_length), fabric=fabric)

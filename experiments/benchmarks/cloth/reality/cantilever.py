@@ -9,18 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
-from experiments.benchmarks.cloth.reality.bench import FABRICS, RESTLESS, Cloth, Fabric, elastic
+from experiments.benchmarks.cloth.reality.bench import RESTLESS, Cloth, elastic, fabric_named
 from experiments.benchmarks.cloth.reality.elastica import bending_length_of, cantilever, peirce_cantilever
 from experiments.benchmarks.cloth.reality.rows import Row, millimetres
 from experiments.benchmarks.cloth.reality.sheets import lifted, strip, turned
+from polyfold.garments import Fabric
 
 WIDTH = 0.025
 """Of the strip [m], as the standards have it."""
 WIDE = 0.1
 """Of a wider strip [m]."""
+REST = 6.0
+"""Time that a strip gets to come to rest [s]."""
 COARSEST = 3.0
 """An overhang has at least so many edges."""
 BAR = 0.08
@@ -56,18 +60,19 @@ def overhang_for(bending_length: float, edge_length: float) -> float:
     return max(2 * bending_length, COARSEST * edge_length)
 
 
-def hang(fabric: Fabric, overhang: float, edge_length: float, along: str = "warp", width: float = WIDTH) -> Hanging:
-    """Lay a strip over the bar, cut along the warp (x) or the weft (y), and let it come to rest."""
+@lru_cache
+def hang(fabric: Fabric, overhang: float, edge_length: float, along: str = "weft", width: float = WIDTH) -> Hanging:
+    """Lay a strip over the bar, cut along the weft (x) or the warp (y), and let it come to rest."""
     mesh = strip(2 * overhang, width, edge_length, (0.0,))
     distance = mesh.vertices[:, 0].copy()
-    if along == "weft":
+    if along == "warp":
         mesh = turned(mesh)
     cloth = Cloth(mesh, fabric, lifted(mesh.vertices, BAR))
     cloth.pin(np.flatnonzero(np.abs(distance) < 1e-3 * edge_length))
     tips = np.abs(distance) > overhang - 1e-3 * edge_length
-    speed = cloth.rest(2.0)
+    speed = cloth.rest(REST)
     now = cloth.positions()[tips]
-    reach, drop = np.abs(now[:, 1 if along == "weft" else 0]).mean(), BAR - now[:, 2].mean()
+    reach, drop = np.abs(now[:, 1 if along == "warp" else 0]).mean(), BAR - now[:, 2].mean()
     return Hanging(overhang, float(np.arctan2(drop, reach)), float(drop), speed)
 
 
@@ -75,12 +80,12 @@ def cantilever_rows(fabric: Fabric, edge_length: float) -> Iterator[Row]:
     """Bending length in and out, for the fabric along warp and weft and for the range that fabrics have."""
     fabric = elastic(fabric)
     asked = [("warp", fabric, fabric.bending_length_warp), ("weft", fabric, fabric.bending_length_weft)]
-    some = replace(FABRICS["standard"], name="any")
+    some = replace(fabric_named("poplin"), name="any")
     asked += [("warp", elastic(some, value), value) for value in BENDING_LENGTHS]
     for along, sample, length in asked:
         yield _row(sample, along, length, hang(sample, overhang_for(length, edge_length), edge_length, along))
-    length = fabric.bending_length_warp
-    yield _row(fabric, f"warp, {millimetres(WIDE, 0)} wide", length, _hang_wide(fabric, length, edge_length))
+    length = fabric.bending_length_weft
+    yield _row(fabric, f"weft, {millimetres(WIDE, 0)} wide", length, _hang_wide(fabric, length, edge_length))
 
 
 def _hang_wide(fabric: Fabric, length: float, edge_length: float) -> Hanging:

@@ -11,9 +11,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.benchmarks.cloth.reality.bench import RESTLESS, Cloth, Fabric
+from experiments.benchmarks.cloth.reality.bench import RESTLESS, Cloth
 from experiments.benchmarks.cloth.reality.rows import Row, percent
 from experiments.benchmarks.cloth.reality.sheets import ROW, disc, lifted
+from polyfold.garments import Fabric
 
 DISC, PEDESTAL = 0.15, 0.09
 """Radii [m]."""

@@ -10,15 +10,16 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.benchmarks.cloth.reality.bench import RESTLESS, Cloth, Fabric, elastic
+from experiments.benchmarks.cloth.reality.bench import RESTLESS, Cloth, elastic
 from experiments.benchmarks.cloth.reality.elastica import Shape, heart_loop, peirce_heart_loop
 from experiments.benchmarks.cloth.reality.rows import Row, millimetres
 from experiments.benchmarks.cloth.reality.sheets import strip
+from polyfold.garments import Fabric
 
 Floats = NDArray[np.float64]
 
 WIDTH = 0.025
-"""Of the strip [m]."""
+"""Of the strip [m], which is cut along the weft."""
 LENGTHS = (0.15, 0.20)
 """Of the loops' strips [m]; the standard has 150, 200 and 250 mm (15 cm for limp cloth)."""
 CLAMP = 0.13
@@ -34,10 +35,10 @@ def hang_loop(fabric: Fabric, length: float, edge_length: float) -> tuple[float,
     pinned = length / 2 - edge_length / 2
     mesh = strip(length + edge_length, WIDTH, edge_length, (-pinned, pinned))
     along = mesh.vertices[:, 0]
-    start = heart_loop(length, STIFFER * fabric.bending_length_warp, fabric.thickness)
+    start = heart_loop(length, STIFFER * fabric.bending_length_weft, fabric.thickness)
     cloth = Cloth(mesh, fabric, _bent(mesh.vertices, start, length, fabric.thickness))
     cloth.pin(np.flatnonzero(np.abs(along) > pinned - 1e-3 * edge_length))
-    speed = cloth.rest(3.0)
+    speed = cloth.rest(6.0)
     middle = np.abs(along) < 0.75 * edge_length
     return CLAMP - _lowest(along[middle], cloth.positions()[middle, 2]), speed
 
@@ -45,7 +46,7 @@ def hang_loop(fabric: Fabric, length: float, edge_length: float) -> tuple[float,
 def heart_loop_rows(fabric: Fabric, edge_length: float) -> Iterator[Row]:
     """Heights, and what bending length Peirce's formula finds in them."""
     fabric = elastic(fabric)
-    asked = fabric.bending_length_warp
+    asked = fabric.bending_length_weft
     for length in LENGTHS:
         height, speed = hang_loop(fabric, length, edge_length)
         exact = -float(heart_loop(length, asked, fabric.thickness).up[-1])

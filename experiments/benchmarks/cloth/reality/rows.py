@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from experiments.benchmarks.cloth.reality.bench import Fabric
+from polyfold.garments import Fabric
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.benchmarks.cloth.reality.bench import Cloth, Fabric, simulator
+from experiments.benchmarks.cloth.reality.bench import Cloth, simulator
 from experiments.benchmarks.cloth.reality.rows import Row, millimetres
 from experiments.benchmarks.cloth.reality.sheets import lifted, strip
-from polyfold.garments import Garment, Mesh
+from polyfold.garments import Fabric, Garment, Mesh
 from polyfold.types import Action
 
 Floats = NDArray[np.float64]
@@ -74,8 +74,8 @@ def fold_in_simulator(fabric: Fabric, edge_length: float) -> Folded:
     mesh = strip(LENGTH, WIDTH, edge_length)
     moving, resting = _ends(mesh.vertices)
     corners: dict[str, int] = dict(zip(CORNERS, _corners(mesh), strict=True))
-    world = simulator(fabric)
-    world.reset(Garment("rectangle", "strip", None, mesh, corners), 0)
+    world = simulator()
+    world.reset(Garment("rectangle", "strip", None, mesh, corners, fabric=fabric), 0)
     before = world.state()
     pixels = before.camera.to_pixels(before.positions)
     order = [CORNERS.index(name) for name in ("bottom_left", "top_left", "bottom_right", "top_right")]

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.benchmarks.cloth.reality.bench import FABRICS
+from experiments.benchmarks.cloth.reality.bench import FABRICS, fabric_named
 from experiments.benchmarks.cloth.rgbench.capture import POSE_FILE, Frame, read_frames
 from experiments.benchmarks.cloth.rgbench.environment import ARMS, Environment
 from experiments.benchmarks.cloth.rgbench.published import PUBLISHED
@@ -60,9 +60,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--window", type=float, nargs=2, default=(0.0, 1e9), help="start and end that count [s]")
     parser.add_argument("--delay", type=float, default=0.06, help="of the camera [s] (default: 0.06)")
     parser.add_argument("--shoulders", type=int, nargs=2, help="vertices that a fling holds")
-    parser.add_argument("--fabric", choices=tuple(FABRICS), default="jersey", help="default: jersey")
+    parser.add_argument("--fabric", choices=FABRICS, default="jersey", help="default: jersey")
     options = parser.parse_args(arguments)
-    environment = Environment(_configuration(options), FABRICS[options.fabric])
+    environment = Environment(_configuration(options), fabric_named(options.fabric))
     prepared = 10.0 if options.action == "fling" else 0.0
     found = np.array(errors(environment, read_frames(options.capture), tuple(options.window), options.delay, prepared))
     if not len(found):

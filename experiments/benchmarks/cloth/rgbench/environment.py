@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from experiments.benchmarks.cloth.reality.bench import FABRICS, Cloth, Fabric
+from experiments.benchmarks.cloth.reality.bench import Cloth, fabric_named
 from experiments.benchmarks.cloth.rgbench.capture import Trajectory, read_trajectory
 from experiments.benchmarks.cloth.rgbench.garments import lying, read_garment
 from polyfold.errors import ConfigError
+from polyfold.garments import Fabric
 
 Floats = NDArray[np.float64]
 
@@ -155,7 +156,7 @@ class Environment:
 
 def fabric_of(constants: Any) -> Fabric:
     """Fabric with the area weight and frictions of RGBench's ``cloth_params``, the rest as :data:`LIKE`."""
-    like = FABRICS[LIKE]
+    like = fabric_named(LIKE)
     return replace(
         like,
         name=str(_value(constants, "name", "garment")),

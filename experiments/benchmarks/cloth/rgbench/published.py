@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from experiments.benchmarks.cloth.reality.bench import Fabric
 from experiments.benchmarks.cloth.reality.rows import Row
+from polyfold.garments import Fabric
 
 SOURCE = "RGBench, AAAI 2026, results/paper_baselines.csv"
 PUBLISHED = {
