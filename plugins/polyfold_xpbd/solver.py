@@ -20,9 +20,9 @@ from polyfold_xpbd.tethers import TetherMap
 
 SLACK = 0.002
 """How far particles may stray from where they were foreseen before near pairs are listed again [m]."""
-PAIRS_PER_PARTICLE = 64
+PAIRS_PER_PARTICLE = 96
 """Room in the list of near pairs. Flat stacks have about 8 however high they are; more than this is a blow-up."""
-RECOVERY = 0.01
+RECOVERY = 0.03
 """Speed at which overlapping plies come apart [m/s]."""
 TOP_SPEED = 5.0
 """Particles are never faster than this [m/s]."""
@@ -205,7 +205,7 @@ class Solver:
     ) -> bool:
         # A fresh list and no loads make a stage depend on the saved state alone, so that restore() repeats exactly.
         self._clock[:3] = 0, 0, -1
-        self._pairs[3][: self._clock[4]], self._table_load[:] = 0.0, 0.0
+        self._pairs[3][: self._clock[4]], self._table_load[:], self._sharp[:] = 0.0, 0.0, False
         chunk = substeps if on_frame is None else max(1, round(interval / self.dt))
         done = 0
         while done < substeps:

@@ -23,7 +23,7 @@ LIGHT = 0.3
 
 Where a gripper holds all but a corner that hardly counts, that corner would have to move fifty times the overlap.
 """
-KEPT, KEPT_SLANTED, MOST = 0.97, 0.9, 30.0
+KEPT, KEPT_SLANTED, MOST = 1.0, 0.9, 60.0
 """Share of a push that the next substep starts with, where the normal is upright and where it is not.
 
 And the most of it, in what gravity moves a particle by in a substep. Where folds ask for the impossible, pushes that

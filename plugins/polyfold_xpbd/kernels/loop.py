@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from polyfold_xpbd.kernels.contact import find_edge_contacts, find_vertex_contacts, resolve, table, warm_start
-from polyfold_xpbd.kernels.motion import carry, is_finite, predict, strays, velocities
+from polyfold_xpbd.kernels.motion import carry, damp, is_finite, predict, strays, velocities
 from polyfold_xpbd.kernels.pairs import list_edge_pairs, list_vertex_pairs, mark_sharp
 from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, stretch
 from polyfold_xpbd.kernels.vectors import vertex_normals
@@ -58,7 +58,9 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         inverse_dt = np.float32(1.0) / dt
         floor = np.float32(0.5) * thickness
         horizon, window = np.float32(HORIZON) * dt, np.float32(LOOK_EVERY) * dt
+        zero, crowded = np.float32(0.0), False
         for k in range(begin, end):
+            damp(v, dt, damping)
             bend(x, v, previous, hinges, hinge_weights, rest, settings[9], dt)
             if (
                 clock[2] < 0
@@ -72,20 +74,30 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                 count = clock[4]
                 old_second[:count], old_side[:count] = second[:count], side[:count]
                 old_over[:count], old_load[:count] = over[:count], load[:count]
-                clock[3] = list_vertex_pairs(
-                    x, v, normals, horizon, thickness + slack, cell, corners, thickness, vertex_starts, vertex_stops,
-                    old_second, old_side, old_over, old_load, first, second, side, over, load,
-                )  # fmt: skip
+                clock[2] = 0
+                # What flies wildly comes near everything in that time: then there is room for what is near now, and
+                # the next substep lists anew.
+                for ahead in (horizon, zero):
+                    clock[3] = list_vertex_pairs(
+                        x, v, normals, ahead, thickness + slack, cell, corners, thickness, vertex_starts, vertex_stops,
+                        old_second, old_side, old_over, old_load, first, second, side, over, load,
+                    )  # fmt: skip
+                    crowded = ahead == zero
+                    if clock[3] >= 0:
+                        break
                 if clock[3] < 0:
                     return DIVERGED, k
-                clock[4] = list_edge_pairs(
-                    x, v, horizon, thickness + slack, cell, edges, sharp, edge_starts, edge_stops, clock[3],
-                    old_second, old_side, old_over, old_load, first, second, side, over, load,
-                )  # fmt: skip
+                for ahead in (horizon, zero):
+                    clock[4] = list_edge_pairs(
+                        x, v, ahead, thickness + slack, cell, edges, sharp, edge_starts, edge_stops, clock[3],
+                        old_second, old_side, old_over, old_load, first, second, side, over, load,
+                    )  # fmt: skip
+                    crowded = crowded or ahead == zero
+                    if clock[4] >= 0:
+                        break
                 if clock[4] < 0:
                     return DIVERGED, k
                 listed[:, :], foreseen[:, :] = x, v
-                clock[2] = 0
             if clock[2] % LOOK_EVERY == 0:
                 crease(x, hinges, hinge_weights, elastic, settings[8], set_curvature, rest)
                 found = find_vertex_contacts(
@@ -97,22 +109,12 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                     load, bodies, weights, responses, contact_normals, inverse, source,
                 )  # fmt: skip
             clock[0] += 1
-            clock[2] += 1
-            predict(x, v, previous, mobility, dt, damping, fastest)
+            clock[2] = HORIZON if crowded else clock[2] + 1
+            predict(x, v, previous, mobility, dt, fastest)
             if grasped.shape[0] > 0:
                 carry(x, grasped, offsets, arm, directions, path, angles, k)
-            warm_start(
-                x,
-                mobility,
-                clock[5],
-                bodies,
-                responses,
-                contact_normals,
-                source,
-                load,
-                table_load,
-                np.float32(9.81) * dt * dt,
-            )
+            fall = np.float32(9.81) * dt * dt
+            warm_start(x, mobility, clock[5], bodies, responses, contact_normals, source, load, table_load, fall)
             if grasped.shape[0] > 0:
                 hold_back(x, mobility, tied, anchors, lengths)
             stretch(x, mobility, edges, rest_lengths)

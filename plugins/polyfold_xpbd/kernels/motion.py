@@ -11,28 +11,35 @@ BRAKE = 3.0
 
 
 @compiled
-def predict(x, v, previous, mobility, dt, damping, fastest):
-    """Let free particles fly for ``dt`` [s] under gravity, damped, and no faster than ``fastest`` [m/s].
+def damp(v, dt, damping):
+    """Damp velocities [m/s], shape (N, 3), over ``dt`` [s], by ``damping`` [1/s] and by dry friction inside the cloth.
+
+    Before gravity and bending act, and so neither is weakened against the other.
+    """
+    keep, brake = np.float32(1.0) - damping * dt, np.float32(BRAKE) * dt
+    for i in range(v.shape[0]):
+        speed = np.sqrt(v[i, 0] * v[i, 0] + v[i, 1] * v[i, 1] + v[i, 2] * v[i, 2]) + np.float32(1e-12)
+        left = keep * max(np.float32(0.0), np.float32(1.0) - brake / speed)
+        v[i, 0], v[i, 1], v[i, 2] = v[i, 0] * left, v[i, 1] * left, v[i, 2] * left
+
+
+@compiled
+def predict(x, v, previous, mobility, dt, fastest):
+    """Let free particles fly for ``dt`` [s] under gravity, no faster than ``fastest`` [m/s].
 
     Args:
         x, v: positions [m] and velocities [m/s], shape (N, 3); ``x`` is changed.
         previous: gets the positions before [m], shape (N, 3).
         mobility: 0 for held particles and 1 for free ones, shape (N,).
         dt: the substep [s].
-        damping: of velocities [1/s].
         fastest: top speed [m/s].
     """
-    keep = np.float32(1.0) - damping * dt
     fall = np.float32(9.81) * dt
-    brake = np.float32(BRAKE) * dt
     for i in range(x.shape[0]):
         previous[i, 0], previous[i, 1], previous[i, 2] = x[i, 0], x[i, 1], x[i, 2]
         if mobility[i] == np.float32(0.0):
             continue
-        vx, vy, vz = v[i, 0] * keep, v[i, 1] * keep, v[i, 2] * keep
-        speed = np.sqrt(vx * vx + vy * vy + vz * vz) + np.float32(1e-12)
-        left = max(np.float32(0.0), np.float32(1.0) - brake / speed)
-        vx, vy, vz = vx * left, vy * left, vz * left - fall
+        vx, vy, vz = v[i, 0], v[i, 1], v[i, 2] - fall
         speed_2 = vx * vx + vy * vy + vz * vz
         step = dt
         if speed_2 > fastest * fastest:
