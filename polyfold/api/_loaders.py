@@ -152,7 +152,7 @@ def ground(
     rgb = _framed_photo(photo, scale, shift, camera) if photo is not None else _drawn(framed_mask)
     depth = np.full(framed_mask.shape, camera.elevation, np.float32)
     grounding = plugins.create_chosen(experiment or Experiment(), "grounding")
-    template = plugins.create("garments", kind).template()
+    template = plugins.garment_template(kind)
     scene: Scene = grounding.ground(Observation(rgb, depth, camera), framed_mask, template)
     if scene.model is None:
         raise GarmentError("a real garment needs a grounding with a polygon model; use the grounding 'polygon'")

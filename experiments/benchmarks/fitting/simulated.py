@@ -81,7 +81,7 @@ def measure_flat(kind: str, seeds: Iterable[int], grounding: Grounding) -> list[
 def measure_folds(kind: str, seeds: Iterable[int], grounding: Grounding, policy: str) -> list[FoldResult]:
     """Follow garments through the folds of one standard task each."""
     garments, simulator, segmenter = _parts(kind, rotation=20.0)
-    template, act = garments.template(), plugins.create("policies", policy, {}).act
+    template, act = plugins.garment_template(kind), plugins.create("policies", policy, {}).act
     tasks = load_suite(str(plugins.find("tasks", "polyfold70").target)).for_garment(kind)
     results: list[FoldResult] = []
     for number, seed in enumerate(_progress(seeds, f"{kind}, folds")):
