@@ -47,7 +47,7 @@ class PolygonGrounding:
             default=None,
             ge=0.0,
             le=0.02,
-            description="thickness of one layer of the model in a packet [m]; by default that of the fabric, all panels",
+            description="thickness of one layer of the model in a packet [m]; by default the fabric's, all panels",
         )
 
     def __init__(self, config: Config | None = None) -> None:

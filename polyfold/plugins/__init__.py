@@ -2,10 +2,10 @@
 
 What each kind of component must do stands in :mod:`polyfold.plugins.interfaces`, how to register one and how to watch
 runs in :mod:`polyfold.plugins.hookspecs`. The functions here are the methods of the process's own :class:`Host`;
-:func:`generate_garment`, :func:`garment_template` and :func:`make_fabric` ask it for garments with their fabric.
+:func:`generate_garment` and :func:`make_fabric` ask it for garments with their fabric.
 """
 
-from polyfold.plugins._fabrics import garment_template, generate_garment, make_fabric
+from polyfold.plugins._fabrics import generate_garment, make_fabric
 from polyfold.plugins._host import HOST, Host
 
 blame = HOST.blame
@@ -33,7 +33,6 @@ __all__ = [
     "create",
     "create_chosen",
     "find",
-    "garment_template",
     "generate_garment",
     "make_fabric",
     "names",

@@ -104,7 +104,7 @@ def _card(policy: _Mapped, task: Task, seed: int, experiment: Experiment) -> Car
     picture = simulator.reset(plugins.generate_garment(task.garment, seed, fabric=experiment.fabric), seed)
     before = simulator.state()
     line = fold_lines(task, before.keypoint_pixels())[0]
-    template = plugins.garment_template(task.garment)
+    template = plugins.create("garments", task.garment).template()
     scene = grounding.ground(picture, segmenter.segment(picture), template)
     action = policy.act(line, scene, np.random.default_rng(seed))
     points, values = policy.action_map(line, scene)
