@@ -83,6 +83,9 @@ class Cloth:
     """
 
     def __init__(self, mesh: Mesh, fabric: Any, positions: Floats) -> None:
+        # Samples are cut along x; the solver's fabrics are of garments, in which the warp is upright.
+        warp, weft = fabric.bending_length_warp, fabric.bending_length_weft
+        fabric = replace(fabric, bending_length_warp=weft, bending_length_weft=warp)
         self._solver = Solver(mesh, np.asarray(positions, float)[:, :2], fabric)
         self._held = np.zeros(0, np.int64)
         self._place(positions)
