@@ -71,11 +71,10 @@ def garment_template(garment_kind: str, fabric: Fabric | None = None) -> Templat
     """
     from polyfold.plugins.interfaces import SewnKind
 
-    kind = HOST.create("garments", garment_kind)
-    if fabric is None:
-        fabric = HOST.create("fabrics", default_fabric(garment_kind)).fabric()
-    panels = kind.pattern.layers if isinstance(kind, SewnKind) else 1
-    return kind.template().of_thickness(panels * fabric.thickness)
+    made = fabric or HOST.create("fabrics", default_fabric(garment_kind)).fabric()
+    cls = HOST.component_class("garments", garment_kind)
+    panels = cls.pattern.layers if isinstance(cls, SewnKind) else 1
+    return HOST.create("garments", garment_kind).template().of_thickness(panels * made.thickness)
 
 
 def generate_garment(
