@@ -15,6 +15,9 @@ from polyfold_grounding.fitting.evidence import Evidence
 
 __all__ = ["PolygonGrounding"]
 
+UNTOLD = 0.001
+"""What one layer of the model is taken to be high where the template does not say [m]."""
+
 
 class PolygonGrounding:
     """Fits the garment's template to the silhouette, then follows it.
@@ -40,8 +43,11 @@ class PolygonGrounding:
             gt=0.0,
             description="Chamfer distance [px, for a garment of 150 x 150 px] above which all rotations are searched",
         )
-        ply_thickness: float = Field(
-            default=0.001, ge=0.0, le=0.02, description="thickness of one layer of the model in a packet [m]"
+        ply_thickness: float | None = Field(
+            default=None,
+            ge=0.0,
+            le=0.02,
+            description="thickness of one layer of the model in a packet [m]; by default the fabric's, all panels",
         )
 
     def __init__(self, config: Config | None = None) -> None:
@@ -66,11 +72,16 @@ class PolygonGrounding:
         if previous is None or previous.model is None:
             tracked = first_model(template, evidence, self.config.rotations, self.config.optimizer)
         else:
-            thickness = self.config.ply_thickness * observation.camera.pixels_per_metre
+            thickness = self._thickness(template) * observation.camera.pixels_per_metre
             tracked = next_model(
                 previous.model, previous.contour, fold_line, evidence, self.config.displaced_px, thickness
             )
         return self._scene(template, mask, evidence.contour, tracked.model, tracked.chamfer, tracked.notes)
+
+    def _thickness(self, template: Template) -> float:
+        """Of one layer of the model [m]: as chosen, else as said of the fabric."""
+        said = UNTOLD if template.thickness is None else template.thickness
+        return said if self.config.ply_thickness is None else self.config.ply_thickness
 
     def _scene(
         self,

@@ -19,6 +19,7 @@ from polyfold.garments._outline_files import load_mask, load_outline, load_pictu
 from polyfold.garments._twin import twin_from_outline
 from polyfold.geometry import Camera, contour_of
 from polyfold.geometry._masks import fill_polygon
+from polyfold.plugins._fabrics import garment_template
 from polyfold.plugins.interfaces import SewnKind
 from polyfold.types import Observation, Scene
 
@@ -152,7 +153,7 @@ def ground(
     rgb = _framed_photo(photo, scale, shift, camera) if photo is not None else _drawn(framed_mask)
     depth = np.full(framed_mask.shape, camera.elevation, np.float32)
     grounding = plugins.create_chosen(experiment or Experiment(), "grounding")
-    template = plugins.create("garments", kind).template()
+    template = garment_template(kind)
     scene: Scene = grounding.ground(Observation(rgb, depth, camera), framed_mask, template)
     if scene.model is None:
         raise GarmentError("a real garment needs a grounding with a polygon model; use the grounding 'polygon'")

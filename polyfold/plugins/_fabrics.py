@@ -11,6 +11,7 @@ from polyfold.plugins._traits import MadeOf
 if TYPE_CHECKING:
     from polyfold.config import ComponentSpec
     from polyfold.garments import Fabric, Garment
+    from polyfold.polygon import Template
 
 FALLBACK = "poplin"
 """What kinds of garment are made of that do not say: a plain cotton weave of medium weight and stiffness."""
@@ -56,6 +57,24 @@ def make_fabric(choice: ComponentSpec, garment_kind: str) -> Fabric:
     """
     chosen = chosen_fabric(choice, garment_kind)
     return HOST.create("fabrics", chosen.name, chosen.params).fabric()
+
+
+def garment_template(garment_kind: str, fabric: Fabric | None = None) -> Template:
+    """The polygon template of a kind of garment, told how thick a layer of it is: all panels of the fabric.
+
+    Args:
+        garment_kind: registered kind, for example ``tshirt``.
+        fabric: what the person who folds it says it is made of; by default what the kind usually is.
+
+    Raises:
+        PluginError: if there is no such kind or fabric.
+    """
+    from polyfold.plugins.interfaces import SewnKind
+
+    made = fabric or HOST.create("fabrics", default_fabric(garment_kind)).fabric()
+    cls = HOST.component_class("garments", garment_kind)
+    panels = cls.pattern.layers if isinstance(cls, SewnKind) else 1
+    return HOST.create("garments", garment_kind).template().of_thickness(panels * made.thickness)
 
 
 def generate_garment(

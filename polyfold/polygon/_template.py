@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -83,7 +84,17 @@ class Template:
         self.penalties = PenaltySet(penalties, self.names)
         self.cyclic = cyclic
         self.covered = tuple(covered)
+        self.thickness: float | None = None
         self._check()
+
+    def of_thickness(self, thickness: float) -> Template:
+        """The same template for garments of which one layer of the model, all its panels, is ``thickness`` [m] high.
+
+        No picture shows that; who says what lies on the table says it (``thickness`` is None otherwise).
+        """
+        template = copy.copy(self)
+        template.thickness = float(thickness)
+        return template
 
     @property
     def canonical(self) -> Floats:

@@ -19,6 +19,7 @@ from polyfold.errors import (
     SimulationError,
 )
 from polyfold.garments import Garment
+from polyfold.plugins._fabrics import garment_template
 from polyfold.plugins.interfaces import Agent, Simulator, UsesComponents
 from polyfold.rollout._inputs import PRIVILEGED, Start, goal_for
 from polyfold.rollout._transcript import Transcript
@@ -130,7 +131,7 @@ class _Rollout:
     def _begin(self, seed: int, agent_seed: int) -> None:
         start = self._start
         clock = time.perf_counter()
-        template = plugins.create("garments", start.garment.kind).template()
+        template = garment_template(start.garment.kind, start.garment.fabric)
         self._subgoals = tuple(self._agent.begin(goal_for(self._agent, start, template, agent_seed), self._seen))
         spent = self.seconds["subgoals"] = time.perf_counter() - clock
         told = EpisodeStart(start.instruction, start.garment, seed, self._subgoals, self._seen, spent)

@@ -8,6 +8,7 @@ from polyfold import plugins
 from polyfold.config import ComponentSpec
 from polyfold.errors import ConfigError, GarmentError, PluginError
 from polyfold.garments._fabric import UNCHOSEN
+from polyfold.plugins._fabrics import garment_template
 
 BUNDLED = {"jersey", "poplin", "denim", "terry", "felt"}
 PUBLISHED = {
@@ -117,6 +118,14 @@ def test_a_kind_that_names_no_fabric_is_made_of_poplin():
         assert plugins.generate_garment("napkin", 2000, 0.04, ComponentSpec(name="felt")).fabric == made("felt")
     finally:
         plugins.unregister("garments", "napkin")
+
+
+@pytest.mark.parametrize(("kind", "panels"), [("tshirt", 2), ("pants", 2), ("square", 1), ("rectangle", 1)])
+def test_templates_know_how_thick_all_panels_of_the_fabric_are_together(kind, panels):
+    usual, felt = polyfold.garment(kind, seed=2000, edge_length=0.04).fabric, made("felt")
+    assert garment_template(kind).thickness == pytest.approx(panels * usual.thickness)
+    assert garment_template(kind, felt).thickness == pytest.approx(panels * felt.thickness)
+    assert plugins.create("garments", kind).template().thickness is None, "the kind's own is as it was"
 
 
 def test_what_generators_make_is_poplin_until_a_fabric_is_put_in():

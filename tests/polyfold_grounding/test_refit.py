@@ -132,6 +132,20 @@ def test_a_line_beside_the_cloth_adds_no_fold_and_says_so(grounding):
     assert any("no fold was added" in note for note in scene.notes)
 
 
+def test_creases_begin_as_thick_as_the_template_says_unless_the_parameter_does(grounding):
+    scene, truth = start(grounding, "pants", 2012)
+    p = truth.points()
+    line = FoldLine.moving((p["leg_outer_left"] + p["leg_outer_right"]) / 2, (p["waist_left"] + p["waist_right"]) / 2)
+    mask, thick = mask_of(truth.fold(line)), template_of("pants").of_thickness(0.015)
+
+    def text(grounding, template):
+        return grounding.ground(seen(), mask, template, scene, line).text
+
+    told, chosen = (PolygonGrounding(PolygonGrounding.Config(ply_thickness=t)) for t in (0.015, 0.0))
+    assert text(grounding, thick) == text(told, template_of("pants"))
+    assert text(chosen, thick) == text(chosen, template_of("pants")) != text(grounding, thick)
+
+
 def test_refitting_is_a_pure_function(grounding):
     scene, truth = start(grounding, "tshirt", 2018)
     line = sleeve_line(truth, "right")

@@ -68,6 +68,13 @@ def test_an_agent_is_told_only_what_it_requires(square):
     assert set(TOLD) == {"kind", "template", "seed"}
 
 
+@pytest.mark.parametrize(("kind", "fabric", "layer"), [("square", "felt", 0.002), ("pants", "denim", 0.0019)])
+def test_an_agent_is_told_how_thick_a_layer_is_as_a_label_in_the_garment_would(kind, fabric, layer):
+    cloth = polyfold.garment(kind, seed=2001, edge_length=0.05, fabric=fabric)
+    attempt("fold it", cloth, 0, polyfold.Experiment.of(agent="spy"))
+    assert TOLD["template"].thickness == pytest.approx(layer)
+
+
 def test_steps_guidance_is_one_text_and_picture_per_fold(square):
     run(square, "guided", task="square-triangle-top_left-then-bottom_left")
     assert set(TOLD) == {"kind", "template", "seed", "subgoal_texts", "subgoal_images", "goal_image"}

@@ -13,6 +13,7 @@ from tqdm import tqdm
 from polyfold import plugins
 from polyfold.errors import PolyfoldError
 from polyfold.geometry import FoldLine, turn_onto
+from polyfold.plugins._fabrics import garment_template
 from polyfold.plugins.interfaces import GarmentKind, Grounding, Segmenter, Simulator
 from polyfold.polygon import FoldedModel, Template
 from polyfold.tasks import fold_lines, load_suite
@@ -80,8 +81,8 @@ def measure_flat(kind: str, seeds: Iterable[int], grounding: Grounding) -> list[
 
 def measure_folds(kind: str, seeds: Iterable[int], grounding: Grounding, policy: str) -> list[FoldResult]:
     """Follow garments through the folds of one standard task each."""
-    garments, simulator, segmenter = _parts(kind, rotation=20.0)
-    template, act = garments.template(), plugins.create("policies", policy, {}).act
+    _, simulator, segmenter = _parts(kind, rotation=20.0)
+    template, act = garment_template(kind), plugins.create("policies", policy, {}).act
     tasks = load_suite(str(plugins.find("tasks", "polyfold70").target)).for_garment(kind)
     results: list[FoldResult] = []
     for number, seed in enumerate(_progress(seeds, f"{kind}, folds")):

@@ -14,6 +14,13 @@ from polyfold_agent.recovery.cloth import Floats, Mask, heights, inside, near
 PLACE_RADIUS = 14.0
 """Neighbourhood of a place in which the flap's height is measured [px]."""
 
+THINNEST = 1e-5
+"""Thinner cloth is none: the depth image's rounding [m]."""
+
+MOST = 2.0
+"""No pixel proves more than this: plies of half a millimetre bulge by many times their thickness. Two is what a single
+ply gives: the picture shows its middle, so that it seems half as high while it lies on the table."""
+
 SPECK = 5
 """Unexpected cloth narrower than this [px] is the outline's uncertainty."""
 
@@ -53,15 +60,18 @@ class Expectation:
         return cls(cloth, flap > 0, base, base + np.asarray(above, np.float32))
 
     def landed(self, seen: NDArray[np.float32], place: Floats) -> float:
-        """How much of the flap came down around a place: 0 where nothing did, about 1 where all did.
+        """How much of the flap came down around a place: 0 where nothing did, 1 to 2 where all did.
 
         Args:
             seen: height of the cloth now [m], shape (H, W).
             place: where an arm let go [px], shape (2,).
         """
-        around = near(place, PLACE_RADIUS, self.flap)
-        thickness = float((self.height - self.base)[around].mean()) if around.any() else 0.0
-        return float((seen - self.base)[around].mean()) / thickness if thickness > 1e-4 else 1.0
+        thickness = self.height - self.base
+        around = near(place, PLACE_RADIUS, self.flap & (thickness > THINNEST))
+        if not around.any():
+            return 1.0
+        shares = (seen - self.base)[around] / thickness[around]
+        return float(np.clip(shares, 0.0, MOST).mean())
 
     def tip(self, mask: Mask) -> tuple[Floats, float]:
         """The cloth farthest beyond the expected outline: a pixel a little inside it, shape (2,), and how far [px]."""

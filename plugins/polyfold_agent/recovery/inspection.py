@@ -75,7 +75,7 @@ def _misplaced(
     if attempt.action.arms == 2:
         expected, seen = Expectation.of(attempt), heights(observation, mask)
         tip, beyond = expected.tip(mask)
-        shares = np.maximum([expected.landed(seen, place) for place in attempt.action.places], 0.0)
+        shares = np.array([expected.landed(seen, place) for place in attempt.action.places])
         enough = next(share for difference, share in UNEVEN if np.ptp(shares) >= difference)
         overhangs = left > enough * remaining and beyond > enough * astray * attempt.depth
         if overhangs and shares.min() < LANDED:

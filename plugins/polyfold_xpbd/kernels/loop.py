@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from polyfold_xpbd.kernels.contact import find_edge_contacts, find_vertex_contacts, resolve, table, warm_start
+from polyfold_xpbd.kernels.contact import resolve, table, warm_start
 from polyfold_xpbd.kernels.motion import carry, damp, is_finite, predict, strays, velocities
 from polyfold_xpbd.kernels.pairs import list_edge_pairs, list_vertex_pairs, mark_sharp
 from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, stretch
+from polyfold_xpbd.kernels.touching import find_edge_contacts, find_vertex_contacts
 from polyfold_xpbd.kernels.vectors import vertex_normals
 
 RUNNING, SETTLED, DIVERGED = 0, 1, 2
