@@ -29,7 +29,7 @@ def warm_start(x, mobility, count, bodies, responses, normals, source, load, tab
     Args:
         x: positions [m], shape (N, 3), changed.
         mobility: 0 for held particles and 1 for free ones, shape (N,).
-        count, bodies, responses, normals, source: the contacts, see :func:`polyfold_xpbd.kernels.touching.find_vertex_contacts`.
+        count, bodies, responses, normals, source: the contacts, see :mod:`polyfold_xpbd.kernels.touching`.
         load, table_load: pushes and friction [m] per pair, shape (P, 4), and per particle, shape (N, 3), changed.
         fall: what gravity moves a particle by in a substep [m].
     """

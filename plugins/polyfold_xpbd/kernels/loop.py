@@ -48,7 +48,8 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             clock: substeps since the stage began, for how many the cloth has been slow, substeps since the list of
                 pairs was made, its vertex pairs, all its pairs and the contacts in use, int64, shape (6,).
             settings: time step [s], thickness, slack and cell [m], friction of table and cloth, recovery [m] and top
-                speed [m/s], share of a crease that stays, lead of bending [s], float32, shape (10,).
+                speed [m/s], share of a crease that stays, lead of bending [s], mean normal
+                of a bend, float32, shape (11,).
 
         Returns:
             (status, substeps done).
@@ -71,7 +72,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                 if not is_finite(x):
                     return DIVERGED, k
                 vertex_normals(x, corners, use, normals)
-                mark_sharp(normals, edges, sharp)
+                mark_sharp(normals, edges, sharp, settings[10])
                 count = clock[4]
                 old_second[:count], old_side[:count] = second[:count], side[:count]
                 old_over[:count], old_load[:count] = over[:count], load[:count]

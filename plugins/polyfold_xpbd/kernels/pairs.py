@@ -17,8 +17,8 @@ import numpy as np
 from polyfold_xpbd.kernels.near import ROOM, by_height, gather, sort_by_cell, swept_boxes
 from polyfold_xpbd.kernels.vectors import compiled
 
-BENT, FLAT = 0.95, 0.98
-"""Length of a mean normal below which a sheet counts as bent, and above which it is flat again."""
+FLATTER = 0.5
+"""How far back to flat a bent sheet has to come to count as flat again."""
 COVERED, UNBENT, BEHIND = -0.02, 0.8, 0.7
 """A ply covers what is behind it where a vertex is this far inside one of its triangles and faces it this squarely.
 
@@ -29,17 +29,18 @@ CELL = 0.4
 
 
 @compiled
-def mark_sharp(normals, edges, sharp):
-    """Mark the edges where the sheet is bent: the mean normal of either end is short.
+def mark_sharp(normals, edges, sharp, bent):
+    """Mark the edges where the sheet is bent: the mean normal of either end is shorter than ``bent``.
 
     An edge stays marked until it is clearly flat again; contacts that came and went would keep creases moving.
     """
+    flat = bent + np.float32(FLATTER) * (np.float32(1.0) - bent)
+    bent_2, flat_2 = bent * bent, flat * flat
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
         length_a = normals[a, 0] * normals[a, 0] + normals[a, 1] * normals[a, 1] + normals[a, 2] * normals[a, 2]
         length_b = normals[b, 0] * normals[b, 0] + normals[b, 1] * normals[b, 1] + normals[b, 2] * normals[b, 2]
-        limit = np.float32(FLAT if sharp[e] else BENT)
-        sharp[e] = min(length_a, length_b) < limit * limit
+        sharp[e] = min(length_a, length_b) < (flat_2 if sharp[e] else bent_2)
 
 
 @compiled
