@@ -32,8 +32,8 @@ REST_SPEED, LONGEST_SETTLING = 0.003, 1.0
 """RMS speed that counts as rest [m/s], and how long to wait for it [s]."""
 
 
-BEND, SHARPEST_FLAT = 3.0, 0.95
-"""Edges are guarded in bends of this angle [rad] per thickness in edge lengths; always where a normal is this short."""
+BEND, LEAST_BEND, MOST_BEND = 3.0, 0.15, 0.32
+"""Edges are guarded in bends of this angle [rad] per thickness in edge lengths; the least and the most that it is."""
 STIFFEST, LEAD = 1.2, 8.0
 """What keeps bending stable: its fastest squared frequency, times the squared substep, times the lead plus one half.
 
@@ -57,7 +57,7 @@ def bent_normal(thickness: float) -> float:
 
     Vertices on triangles alone let sheets bent by an angle into each other by about a quarter of it, in edge lengths.
     """
-    return max(float(np.cos(BEND * thickness)), SHARPEST_FLAT)
+    return float(np.cos(np.clip(BEND * thickness, LEAST_BEND, MOST_BEND)))
 
 
 @lru_cache(maxsize=4)
