@@ -21,7 +21,10 @@ from polyfold_xpbd.tethers import TetherMap
 SLACK = 0.002
 """How far particles may stray from where they were foreseen before near pairs are listed again [m]."""
 PAIRS_PER_PARTICLE = 96
-"""Room in the list of near pairs. Flat stacks have about 8 however high they are; more than this is a blow-up."""
+"""Room in the list of near pairs. Flat stacks have about 8 however high they are.
+
+Where there is no room, the list looks less far ahead.
+"""
 RECOVERY = 0.03
 """Speed at which overlapping plies come apart [m/s]."""
 TOP_SPEED = 5.0
@@ -30,8 +33,6 @@ MOVING, SETTLING = 8.0, 60.0
 """Velocity damping while a gripper moves and while the cloth comes to rest [1/s]."""
 REST_SPEED, LONGEST_SETTLING = 0.003, 1.0
 """RMS speed that counts as rest [m/s], and how long to wait for it [s]."""
-
-
 BEND, LEAST_BEND, MOST_BEND = 3.0, 0.15, 0.32
 """Edges are guarded in bends of this angle [rad] per thickness in edge lengths; the least and the most that it is."""
 STIFFEST, LEAD = 1.2, 8.0
@@ -107,7 +108,7 @@ class Solver:
         self._table_load = np.zeros((count, 3), np.float32)
         self._set = np.zeros(hinges, np.float32)
         self._rest = np.zeros((hinges, 3), np.float32)
-        self._clock = np.zeros(6, np.int64)
+        self._clock = np.zeros(5, np.int64)
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
@@ -135,7 +136,7 @@ class Solver:
         ``pair_over[k]`` whether they were over each other. ``crease`` and ``crease_rest``, shapes (H,) and (H, 3), are
         the set curvatures of the hinges.
         """
-        vertex_pairs, pairs = int(self._clock[3]), int(self._clock[4])
+        vertex_pairs, pairs = int(self._clock[2]), int(self._clock[3])
         second, side, over, _ = self._pairs
         return {
             "pair_kinds": np.array([vertex_pairs, pairs - vertex_pairs]),
@@ -171,7 +172,7 @@ class Solver:
             starts[:], stops[:] = 0, 0
             owners, at, counts = np.unique(self._first[begin:end], return_index=True, return_counts=True)
             starts[owners], stops[owners] = begin + at, begin + at + counts
-        self._clock[3], self._clock[4] = vertex_pairs, pairs
+        self._clock[2], self._clock[3] = vertex_pairs, pairs
         self._set[:], self._rest[:] = memory.get("crease", 0.0), memory.get("crease_rest", 0.0)
         self._mobility[:] = 1.0
 
@@ -214,8 +215,8 @@ class Solver:
         interval: float,
     ) -> bool:
         # A fresh list and no loads make a stage depend on the saved state alone, so that restore() repeats exactly.
-        self._clock[:3] = 0, 0, -1
-        self._pairs[3][: self._clock[4]], self._table_load[:], self._sharp[:] = 0.0, 0.0, False
+        self._clock[:2] = 0, -1
+        self._pairs[3][: self._clock[3]], self._table_load[:], self._sharp[:] = 0.0, 0.0, False
         chunk = substeps if on_frame is None else max(1, round(interval / self.dt))
         done = 0
         while done < substeps:

@@ -319,3 +319,15 @@ def test_vertices_that_were_meant_to_meet_and_lie_far_apart_do_not():
     np.testing.assert_array_equal(twice.points()["top_left"], twice.points()["top_right"])
     parted = FoldedModel(once.rest, CORNERS, {}, (FoldLine((180, 300), (180, 100)),), "square", (), once.meetings)
     assert np.hypot(*(parted.points()["top_left"] - parted.points()["top_right"])) == pytest.approx(40.0)
+
+
+def test_a_corner_folded_in_keeps_the_edges_of_its_flap_where_the_bend_uses_up_cloth():
+    corners = np.array([[100.0, 300.0], [100.0, 100.0], [300.0, 100.0], [300.0, 300.0]])
+    names = ("bottom_left", "top_left", "top_right", "bottom_right")
+    flat = FoldedModel(corners, names, {}, kind="square")
+    for allowance in (-6.0, 0.0, 6.0):
+        folded = flat.fold(FoldLine.moving(corners[0], corners.mean(axis=0)), allowance)
+        edges = json.loads(folded.to_text((400, 400)))["edges"]
+        for layer in ("0", "1"):
+            assert [edge[2:] for edge in edges[layer] if "fold1_start" in edge and "fold1_end" in edge] == [["crease"]]
+        assert {"bottom_left"} < {name for edge in edges["1"] for name in edge}

@@ -67,19 +67,24 @@ def carry(x, grasped, offsets, arm, directions, path, angles, k):
 
 @compiled
 def velocities(x, previous, v, inverse_dt):
-    """Velocities [m/s] of a substep into ``v``, shape (N, 3), from positions ``x`` and those ``previous`` to it [m].
-
-    Returns:
-        Sum of the squared speeds [m²/s²].
-    """
-    energy = np.float32(0.0)
+    """Velocities [m/s] of a substep into ``v``, shape (N, 3), from positions ``x`` and those ``previous`` to it [m]."""
     for i in range(x.shape[0]):
         vx = (x[i, 0] - previous[i, 0]) * inverse_dt
         vy = (x[i, 1] - previous[i, 1]) * inverse_dt
         vz = (x[i, 2] - previous[i, 2]) * inverse_dt
         v[i, 0], v[i, 1], v[i, 2] = vx, vy, vz
-        energy += vx * vx + vy * vy + vz * vz
-    return energy
+
+
+@compiled
+def rests(x, rested, limit):
+    """Whether particles at ``x`` [m], shape (N, 3), are less than ``limit`` [m] RMS from ``rested``, which follows."""
+    moved = np.float32(0.0)
+    for i in range(x.shape[0]):
+        for axis in range(3):
+            way = x[i, axis] - rested[i, axis]
+            moved += way * way
+            rested[i, axis] = x[i, axis]
+    return moved < x.shape[0] * limit * limit
 
 
 @compiled

@@ -75,8 +75,8 @@ def find_vertex_contacts(
 ):  # fmt: skip
     """Contacts of listed vertices and triangles for the next ``window`` [s]; how many.
 
-    ``bodies`` and ``weights``, shape (C, 4), ``normals``, shape (C, 3), ``inverse`` (of the contact's mass), shape
-    (C,), and ``source`` (number of the pair), shape (C,), get the contacts.
+    ``bodies`` (particles), ``weights`` and ``responses`` (how far each moves per push), shape (C, 4), ``normals``,
+    shape (C, 3), ``inverse`` (push per metre of gap) and ``source`` (number of the pair), shape (C,), get them.
     """
     found, one, zero = 0, np.float32(1.0), np.float32(0.0)
     for p in range(pairs):
