@@ -48,7 +48,7 @@ def take_picture(
     return Observation(rgb, out, camera)
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _rasterise(screen, normals, triangles, outside_up, colours, depth, shade):
     height, width = depth.shape
     one, zero = np.float32(1.0), np.float32(0.0)
@@ -88,7 +88,7 @@ def _rasterise(screen, normals, triangles, outside_up, colours, depth, shade):
                     shade[y, x, k] = min(np.float32(255.0), light * colour[k])
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _average(depth, shade, table, rgb, out):
     """Mean of the samples of each pixel, darkened under the edge of a higher layer; depth of the cloth's samples."""
     height, width = out.shape

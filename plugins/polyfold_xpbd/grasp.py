@@ -49,12 +49,12 @@ class Motion:
 
     Attributes:
         path: position of every arm at each substep [m], float32, shape (S, arms, 3).
-        angles: how far the held patch has turned [rad], float32, shape (S,).
+        turns: cosine and sine of how far the held patch has turned, float32, shape (S, 2).
         directions: horizontal unit vector from pick to place per arm, float32, shape (arms, 2).
     """
 
     path: Floats
-    angles: Floats
+    turns: Floats
     directions: Floats
 
 
@@ -102,7 +102,8 @@ def plan_motion(grasp: Grasp, time_step: float) -> Motion:
     path[:, :, :2] = grasp.starts[:, :2] + across[:, None, None] * span
     path[:, :, 2] = grasp.starts[:, 2] + progress[:, None] * (grasp.ends - grasp.starts)[:, 2] + up[:, None] * height
     directions = span / np.maximum(distance, 1e-9)[:, None]
-    return Motion(path.astype(np.float32), (np.pi * progress).astype(np.float32), directions.astype(np.float32))
+    turns = np.stack([np.cos(np.pi * progress), np.sin(np.pi * progress)], axis=1)
+    return Motion(path.astype(np.float32), turns.astype(np.float32), directions.astype(np.float32))
 
 
 def _arc() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

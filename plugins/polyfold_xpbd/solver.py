@@ -187,7 +187,7 @@ class Solver:
             return True
         motion = plan_motion(grasp, self.dt)
         self._mobility[grasp.particles] = 0.0
-        held = (grasp.particles, grasp.offsets, grasp.arms, motion.directions, motion.path, motion.angles)
+        held = (grasp.particles, grasp.offsets, grasp.arms, motion.directions, motion.path, motion.turns)
         held += self._tethers.tie(grasp.particles, grasp.arms, grasp.offsets)
         alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval)
         self._mobility[:] = 1.0
@@ -253,7 +253,7 @@ _EMPTY = (
     np.zeros(0, np.uint32),
     np.zeros((1, 2), np.float32),
     np.zeros((1, 1, 3), np.float32),
-    np.zeros(1, np.float32),
+    np.zeros((1, 2), np.float32),
     np.zeros(0, np.uint32),
     np.zeros(0, np.uint32),
     np.zeros(0, np.float32),

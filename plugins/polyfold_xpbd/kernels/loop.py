@@ -39,7 +39,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         x, v, previous, mobility, normals, edges, rest_lengths, hinges, hinge_weights, elastic, set_curvature, rest,
         corners, panel, use, clock, listed, foreseen, rested, sharp, vertex_starts, vertex_stops, edge_starts,
         edge_stops, first, second, side, over, load, old_second, old_side, old_over, old_load, bodies, weights,
-        responses, contact_normals, inverse, source, table_load, grasped, offsets, arm, directions, path, angles, tied,
+        responses, contact_normals, inverse, source, table_load, grasped, offsets, arm, directions, path, turns, tied,
         anchors, lengths, begin, end, settings, damping, rest_speed,
     ):  # fmt: skip
         """Run substeps ``begin`` to ``end`` in place; stop once the cloth is slower than ``rest_speed`` [m/s], if > 0.
@@ -113,7 +113,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             clock[1] = HORIZON if crowded else clock[1] + 1
             predict(x, v, previous, mobility, dt, fastest)
             if grasped.shape[0] > 0:
-                carry(x, grasped, offsets, arm, directions, path, angles, k)
+                carry(x, grasped, offsets, arm, directions, path, turns, k)
             fall = np.float32(9.81) * dt * dt
             warm_start(x, mobility, clock[4], bodies, responses, contact_normals, source, load, table_load, fall)
             if grasped.shape[0] > 0:

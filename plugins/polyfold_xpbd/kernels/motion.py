@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polyfold_xpbd.kernels.vectors import careful, compiled
+from polyfold_xpbd.kernels.vectors import compiled
 
 BRAKE = 3.0
 """Dry friction inside the cloth, as a deceleration [m/s²]: what trembles comes to rest, what moves hardly feels it."""
@@ -50,9 +50,9 @@ def predict(x, v, previous, mobility, dt, fastest):
 
 
 @compiled
-def carry(x, grasped, offsets, arm, directions, path, angles, k):
+def carry(x, grasped, offsets, arm, directions, path, turns, k):
     """Put the grasped particles where the grippers are, turned about the crease's direction."""
-    c, s = np.float32(np.cos(angles[k])), np.float32(np.sin(angles[k]))
+    c, s = turns[k, 0], turns[k, 1]
     for g in range(grasped.shape[0]):
         a = arm[g]
         ux, uy = directions[a, 0], directions[a, 1]
@@ -99,7 +99,7 @@ def strays(x, listed, foreseen, elapsed, limit):
     return False
 
 
-@careful
+@compiled
 def is_finite(x):
     """Whether all positions [m], shape (N, 3), are numbers within 100 m."""
     return np.isfinite(x.sum()) and np.abs(x).max() < 100.0
