@@ -61,8 +61,6 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         horizon, window = np.float32(HORIZON) * dt, np.float32(LOOK_EVERY) * dt
         zero, crowded = np.float32(0.0), False
         for k in range(begin, end):
-            damp(v, dt, damping)
-            bend(x, v, previous, hinges, hinge_weights, rest, settings[9], dt)
             if (
                 clock[1] < 0
                 or clock[1] >= HORIZON
@@ -109,6 +107,8 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                     x, v, window, mobility, edges, thickness, clock[2], clock[3], found, first, second, side, over,
                     load, bodies, weights, responses, contact_normals, inverse, source,
                 )  # fmt: skip
+            damp(v, dt, damping)
+            bend(x, v, previous, hinges, hinge_weights, rest, settings[9], dt)
             clock[0] += 1
             clock[1] = HORIZON if crowded else clock[1] + 1
             predict(x, v, previous, mobility, dt, fastest)
