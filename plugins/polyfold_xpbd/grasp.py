@@ -19,8 +19,12 @@ RISING, FALLING, HIGHEST = 0.45, 0.25, 0.30
 
 Lower on the way down: a flap that is laid down taut drags what lies below it along.
 """
-ROUNDNESS = 1.3
-"""Shape of the path: 1 is a triangle, 2 half an ellipse."""
+LIMP, STIFF = (0.002, 1.3), (0.006, 2.0)
+"""Height of the held packet [m] and the shape of its path, of a limp and of a stiff packet.
+
+1 is a triangle, 2 half an ellipse. Limp cloth is best laid down along a flat path, which takes it across taut; the
+inner plies of a thick packet have cloth to spare, and coming in flat they push the plies below along.
+"""
 SPEED, RAMP, HOLD = 0.5, 0.15, 0.05
 """Speed of the gripper [m/s], time to reach it and to stop [s], and pause before it opens [s]."""
 
@@ -34,6 +38,7 @@ class Grasp:
         arms: which arm holds each, uint32, shape (G,).
         offsets: position relative to the arm's pick point [m], float32, shape (G, 3).
         starts, ends: pick and place points of every arm [m], shape (arms, 3).
+        height: of the thickest held packet, its plies pressed together [m].
     """
 
     particles: NDArray[np.uint32]
@@ -41,6 +46,7 @@ class Grasp:
     offsets: Floats
     starts: NDArray[np.float64]
     ends: NDArray[np.float64]
+    height: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +64,9 @@ class Motion:
     directions: Floats
 
 
-def take_hold(action: Action, positions: NDArray[np.float64], camera: Camera, thickness: float) -> Grasp | None:
+def take_hold(
+    action: Action, positions: NDArray[np.float64], triangles: NDArray[np.uint32], camera: Camera, thickness: float
+) -> Grasp | None:
     """The particles at ``positions`` [m], shape (N, 3), under each pick, all layers; None if there are none."""
     distances = np.empty((action.arms, len(positions)))
     for arm, pick in enumerate(action.picks):
@@ -71,10 +79,12 @@ def take_hold(action: Action, positions: NDArray[np.float64], camera: Camera, th
         return None
     arms = nearest[particles]
     starts, ends = np.zeros((action.arms, 3)), np.zeros((action.arms, 3))
+    height = 0.0
     for arm in range(action.arms):
         mine = positions[particles[arms == arm]]
         level = float(mine[:, 2].mean()) if len(mine) else 0.0
         above = float(mine[:, 2].max()) - level if len(mine) else 0.0
+        height = max(height, thickness * _plies(particles[arms == arm], positions, triangles))
         starts[arm] = camera.to_world(action.picks[arm], level)
         target = camera.to_world(action.places[arm], level)
         under = ~held & (np.hypot(*(positions - target)[:, :2].T) <= REACH)
@@ -86,14 +96,33 @@ def take_hold(action: Action, positions: NDArray[np.float64], camera: Camera, th
         (positions[particles] - starts[arms]).astype(np.float32),
         starts,
         ends,
+        height,
     )
+
+
+def _plies(held: NDArray[np.int64], positions: NDArray[np.float64], triangles: NDArray[np.uint32]) -> float:
+    """How many plies lie over each other where the held particles are, by the median; 0 if nothing is held."""
+    if len(held) == 0:
+        return 0.0
+    a, b, c = (positions[triangles[np.isin(triangles, held).any(axis=1)]][:, k, :2] for k in range(3))
+    at = positions[held, None, :2]
+
+    def turn(p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.float64]:
+        (px, py), (qx, qy) = np.moveaxis(p - at, 2, 0), np.moveaxis(q - at, 2, 0)
+        return px * qy - py * qx
+
+    turns = np.stack([turn(a, b), turn(b, c), turn(c, a)])
+    # A particle lies in all triangles of its own ply that meet at it: six of them count as one.
+    own = (turns == 0.0).sum(axis=0) > 0
+    inside = ((turns > 0.0).all(axis=0) | (turns < 0.0).all(axis=0)) & ~own
+    return 1.0 + float(np.median(inside.sum(axis=1)))
 
 
 def plan_motion(grasp: Grasp, time_step: float) -> Motion:
     """Arcs from pick to place, all arms arriving together, followed by a short hold."""
     span = (grasp.ends - grasp.starts)[:, :2]
     distance = np.hypot(*span.T)
-    swing, lift, length = _arc()
+    swing, lift, length = _arc(float(np.interp(grasp.height, *zip(LIMP, STIFF, strict=True))))
     progress = _eased(float(length[-1] * distance.max()), time_step)
     across = np.interp(progress, length / length[-1], swing)
     up = np.interp(progress, length / length[-1], lift)
@@ -106,12 +135,12 @@ def plan_motion(grasp: Grasp, time_step: float) -> Motion:
     return Motion(path.astype(np.float32), turns.astype(np.float32), directions.astype(np.float32))
 
 
-def _arc() -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """The path over a distance of 1: how far across, how high, and the length so far."""
+def _arc(roundness: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """The path of this shape over a distance of 1: how far across, how high, and the length so far."""
     angle = np.linspace(0.0, np.pi, 401)
     cosine, sine = np.cos(angle), np.sin(angle)
-    across = (1.0 - np.sign(cosine) * np.abs(cosine) ** (2 / ROUNDNESS)) / 2
-    up = (RISING + (FALLING - RISING) * across) * sine ** (2 / ROUNDNESS)
+    across = (1.0 - np.sign(cosine) * np.abs(cosine) ** (2 / roundness)) / 2
+    up = (RISING + (FALLING - RISING) * across) * sine ** (2 / roundness)
     length = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(across), np.diff(up)))])
     return across, up, length
 

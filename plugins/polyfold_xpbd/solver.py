@@ -182,7 +182,7 @@ class Solver:
 
     def fold(self, action: Action, camera: Camera, on_frame: Callable[[], None] | None, interval: float) -> bool:
         """Move what the picks hold to the places and let it come to rest. False if it diverged."""
-        grasp = take_hold(action, self.positions(), camera, self._thickness)
+        grasp = take_hold(action, self.positions(), self.triangles, camera, self._thickness)
         if grasp is None:
             return True
         motion = plan_motion(grasp, self.dt)
