@@ -15,6 +15,9 @@ from polyfold.tasks._suite import Fold, Task
 def fold_lines(task: Task, keypoints: Mapping[str, ArrayLike]) -> list[FoldLine]:
     """The task's fold lines on a flat garment, one per step.
 
+    Tasks are written on the flat garment: what a step moves counts for later ones as where it lay. But a point that a
+    fold takes along unnamed, such as the corner of a crooked square beside its diagonal, is where the fold takes it.
+
     Args:
         task: the task.
         keypoints: keypoint name -> pixel of the flat garment, shape (2,).
@@ -25,11 +28,11 @@ def fold_lines(task: Task, keypoints: Mapping[str, ArrayLike]) -> list[FoldLine]
     Raises:
         ConfigError: if the task needs a keypoint that is missing, or its points coincide on this garment.
     """
-    everything = np.array([np.asarray(point, float) for point in keypoints.values()])
-    lines = []
+    at = {name: np.asarray(point, float) for name, point in keypoints.items()}
+    everything, moved, lines = np.array(list(at.values())), set[str](), []
     for number, fold in enumerate(task.steps, 1):
         try:
-            lines.append(_stretched(_line_of(fold, keypoints), everything))
+            lines.append(line := _stretched(_line_of(fold, at), everything))
         except KeyError as error:
             raise ConfigError(
                 f"task {task.id}, step {number} needs the keypoint {error}, which the garment does not have; "
@@ -37,6 +40,8 @@ def fold_lines(task: Task, keypoints: Mapping[str, ArrayLike]) -> list[FoldLine]
             ) from error
         except ValueError as error:
             raise ConfigError(f"task {task.id}, step {number}: {error}; choose other points") from error
+        moved.update(*(source for source, _ in fold.pairs or ()), fold.lift or {})
+        at |= {name: line.mirror(at[name]) for name in at.keys() - moved if line.distance(at[name]) > 0.0}
     return lines
 
 

@@ -103,6 +103,17 @@ def test_a_slanted_sleeve_points_to_the_hem(side):
     assert slanted[1] > straight[1] + 20
 
 
+@pytest.mark.parametrize("seed", range(2000, 2006))
+def test_the_second_diagonal_brings_the_corner_from_where_the_first_left_it(seed):
+    pixels = lay("square", seed)[1].keypoint_pixels()
+    first, second = fold_lines(SUITE.task("square-triangle-bottom_left-then-top_left"), pixels)
+    corner, target = (
+        first.mirror(pixels[name]) if first.distance(pixels[name]) > 0 else pixels[name]
+        for name in ("top_left", "bottom_right")
+    )
+    assert second.mirror(corner) == pytest.approx(target, abs=1e-6)
+
+
 def test_lines_turn_with_the_garment():
     task = SUITE.task("pants-block-left-thirds")
     pixels = lay("pants", 2004)[1].keypoint_pixels()
