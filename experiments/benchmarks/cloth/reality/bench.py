@@ -110,7 +110,8 @@ class Cloth:
         """
         held, arms = self._held.astype(np.uint32), np.arange(len(self._held), dtype=np.uint32)
         offsets = np.zeros((len(held), 3), np.float32)
-        motion = (np.zeros((len(held), 2), np.float32), paths.astype(np.float32), np.zeros(len(paths), np.float32))
+        unturned = np.tile(np.array([1.0, 0.0], np.float32), (len(paths), 1))
+        motion = (np.zeros((len(held), 2), np.float32), paths.astype(np.float32), unturned)
         tethers = self._solver._tethers.tie(held, arms, offsets)
         if not self._solver._run((held, offsets, arms, *motion, *tethers), len(paths), MOVING, 0.0, None, 0.0):
             raise SimulationError("the sample diverged while it was carried; carry it more slowly, and report it")
