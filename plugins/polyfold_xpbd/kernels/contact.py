@@ -1,7 +1,8 @@
 """Contact: of the cloth with itself, and with the table.
 
 Pushes and friction are accumulated per pair over substeps and applied again at the start of the next (warm starting),
-so that a stack at rest carries itself and the sweep finds nothing to do.
+so that a stack at rest carries itself and the sweep finds nothing to do. The sweep goes up and down again: one way
+alone, plies of thick packets circle on each other without end.
 """
 
 from __future__ import annotations
@@ -10,14 +11,12 @@ import numpy as np
 
 from polyfold_xpbd.kernels.vectors import compiled, shift
 
-KEPT, KEPT_SLANTED, MOST = 1.0, 0.9, 60.0
-"""Share of a push that the next substep starts with, where the normal is upright and where it is not.
+KEPT_FRICTION, MOST = 0.9, 60.0
+"""Share of friction that the next substep starts with: kept whole, it is a spring without a damper.
 
-And the most of it, in what gravity moves a particle by in a substep. Where folds ask for the impossible, pushes that
+And the most of a push, in what gravity moves a particle by in a substep. Where folds ask for the impossible, pushes that
 were kept whole would grow without end.
 """
-UPRIGHT = 0.9
-"""Height of a unit normal that counts as upright."""
 RECOVERY = 0.1
 """Share of an overlap that a substep opens."""
 
@@ -36,8 +35,9 @@ def warm_start(x, mobility, count, bodies, responses, normals, source, load, tab
     most = np.float32(MOST) * fall
     for i in range(x.shape[0]):
         if table_load[i, 0] != np.float32(0.0):
-            for axis in range(3):
-                table_load[i, axis] *= np.float32(KEPT) * mobility[i]
+            table_load[i, 0] *= mobility[i]
+            table_load[i, 1] *= np.float32(KEPT_FRICTION) * mobility[i]
+            table_load[i, 2] *= np.float32(KEPT_FRICTION) * mobility[i]
             x[i, 0] += table_load[i, 1]
             x[i, 1] += table_load[i, 2]
             x[i, 2] += table_load[i, 0]
@@ -45,12 +45,10 @@ def warm_start(x, mobility, count, bodies, responses, normals, source, load, tab
         p = source[k]
         if load[p, 0] == np.float32(0.0):
             continue
-        share = np.float32(KEPT if abs(normals[k, 2]) > np.float32(UPRIGHT) else KEPT_SLANTED)
-        share = min(share, most / load[p, 0])
+        share = min(np.float32(1.0), most / load[p, 0])
         load[p, 0] *= share
-        load[p, 1] *= share
-        load[p, 2] *= share
-        load[p, 3] *= share
+        for axis in range(1, 4):
+            load[p, axis] *= share * np.float32(KEPT_FRICTION)
         px = load[p, 0] * normals[k, 0] + load[p, 1]
         py = load[p, 0] * normals[k, 1] + load[p, 2]
         pz = load[p, 0] * normals[k, 2] + load[p, 3]
@@ -62,13 +60,14 @@ def warm_start(x, mobility, count, bodies, responses, normals, source, load, tab
 def resolve(
     x, previous, count, bodies, weights, responses, normals, inverse, source, load, thickness, friction, recovery
 ):  # fmt: skip
-    """Keep contacts one thickness apart and hold them by Coulomb friction, one after another.
+    """Keep contacts one thickness apart and hold them by Coulomb friction, one after another and back again.
 
     What overlapped before the substep is opened by moving where it was, too, by at most ``recovery`` [m]: resolving an
     overlap never throws cloth into the air, and is no part of the load that the next substep starts with.
     """
     zero = np.float32(0.0)
-    for k in range(count):
+    for step in range(2 * count):
+        k = step if step < count else 2 * count - 1 - step
         p = source[k]
         i0, i1, i2, i3 = bodies[k, 0], bodies[k, 1], bodies[k, 2], bodies[k, 3]
         w0, w1, w2, w3 = weights[k, 0], weights[k, 1], weights[k, 2], weights[k, 3]
