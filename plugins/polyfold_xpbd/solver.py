@@ -90,7 +90,7 @@ class Solver:
         self.x[mesh.seam, 2] = fabric.thickness
         self.v = np.zeros((count, 3), np.float32)
         self._previous, self._listed, self._foreseen = self.x.copy(), self.x.copy(), self.v.copy()
-        self._rested = self.x.copy()
+        self._start, self._rested = self.x.copy(), self.x.copy()
         self._normals = np.zeros((count, 3), np.float32)
         self._mobility = np.ones(count, np.float32)
         edges, hinges = len(self._model.edges), len(self._model.hinges)
@@ -234,7 +234,7 @@ class Solver:
     ) -> tuple[int, int]:
         model = self._model
         return advance(
-            self.x, self.v, self._previous, self._mobility, self._normals, model.edges, model.rest_lengths,
+            self.x, self.v, self._previous, self._start, self._mobility, self._normals, model.edges, model.rest_lengths,
             model.hinges, model.hinge_weights, model.elastic, self._set, self._rest, model.normal_corners, model.panel,
             model.normal_use, self._clock, self._listed, self._foreseen, self._rested, self._sharp, *self._vertex_range,
             *self._edge_range, self._first, *self._pairs, *self._old_pairs, *self._contacts, self._table_load, *held,

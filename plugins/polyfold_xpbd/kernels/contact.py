@@ -14,8 +14,8 @@ from polyfold_xpbd.kernels.vectors import compiled, shift
 KEPT_FRICTION, MOST = 0.9, 60.0
 """Share of friction that the next substep starts with: kept whole, it is a spring without a damper.
 
-And the most of a push, in what gravity moves a particle by in a substep. Where folds ask for the impossible, pushes that
-were kept whole would grow without end.
+And the most of a push, in what gravity moves a particle by in a substep. Where folds ask for the impossible, pushes
+that were kept whole would grow without end.
 """
 RECOVERY = 0.1
 """Share of an overlap that a substep opens."""

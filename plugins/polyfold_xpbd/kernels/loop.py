@@ -36,8 +36,8 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
 
     @njit(cache=True, error_model="numpy")
     def advance(
-        x, v, previous, mobility, normals, edges, rest_lengths, hinges, hinge_weights, elastic, set_curvature, rest,
-        corners, panel, use, clock, listed, foreseen, rested, sharp, vertex_starts, vertex_stops, edge_starts,
+        x, v, previous, start, mobility, normals, edges, rest_lengths, hinges, hinge_weights, elastic, set_curvature,
+        rest, corners, panel, use, clock, listed, foreseen, rested, sharp, vertex_starts, vertex_stops, edge_starts,
         edge_stops, first, second, side, over, load, old_second, old_side, old_over, old_load, bodies, weights,
         responses, contact_normals, inverse, source, table_load, grasped, offsets, arm, directions, path, turns, tied,
         anchors, lengths, begin, end, settings, damping, rest_speed,
@@ -111,7 +111,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             bend(x, v, previous, hinges, hinge_weights, rest, settings[9], dt)
             clock[0] += 1
             clock[1] = HORIZON if crowded else clock[1] + 1
-            predict(x, v, previous, mobility, dt, fastest)
+            predict(x, v, previous, start, mobility, dt, fastest)
             if grasped.shape[0] > 0:
                 carry(x, grasped, offsets, arm, directions, path, turns, k)
             fall = np.float32(9.81) * dt * dt
@@ -124,7 +124,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                 cloth_friction, recovery,
             )  # fmt: skip
             table(x, previous, mobility, table_load, floor, table_friction)
-            velocities(x, previous, v, inverse_dt)
+            velocities(x, previous, start, v, inverse_dt)
             if rest_speed > 0 and clock[0] % REST_OVER == 0:
                 slow = rests(x, rested, np.float32(REST_OVER) * dt * rest_speed)
                 if slow and clock[0] > REST_OVER:

@@ -24,19 +24,20 @@ def damp(v, dt, damping):
 
 
 @compiled
-def predict(x, v, previous, mobility, dt, fastest):
+def predict(x, v, previous, start, mobility, dt, fastest):
     """Let free particles fly for ``dt`` [s] under gravity, no faster than ``fastest`` [m/s].
 
     Args:
         x, v: positions [m] and velocities [m/s], shape (N, 3); ``x`` is changed.
-        previous: gets the positions before [m], shape (N, 3).
+        previous, start: get the positions before [m], shape (N, 3).
         mobility: 0 for held particles and 1 for free ones, shape (N,).
         dt: the substep [s].
         fastest: top speed [m/s].
     """
     fall = np.float32(9.81) * dt
     for i in range(x.shape[0]):
-        previous[i, 0], previous[i, 1], previous[i, 2] = x[i, 0], x[i, 1], x[i, 2]
+        for axis in range(3):
+            previous[i, axis], start[i, axis] = x[i, axis], x[i, axis]
         if mobility[i] == np.float32(0.0):
             continue
         vx, vy, vz = v[i, 0], v[i, 1], v[i, 2] - fall
@@ -66,13 +67,18 @@ def carry(x, grasped, offsets, arm, directions, path, turns, k):
 
 
 @compiled
-def velocities(x, previous, v, inverse_dt):
-    """Velocities [m/s] of a substep into ``v``, shape (N, 3), from positions ``x`` and those ``previous`` to it [m]."""
+def velocities(x, previous, start, v, inverse_dt):
+    """Velocities [m/s] of a substep into ``v``, shape (N, 3), from positions ``x`` at its end [m].
+
+    Overlap that was opened silently moved ``previous`` away from the ``start``: neither that is a velocity, nor that
+    something else closed it again. Along each axis it is the lesser of the ways from both, and none if they disagree.
+    """
+    zero = np.float32(0.0)
     for i in range(x.shape[0]):
-        vx = (x[i, 0] - previous[i, 0]) * inverse_dt
-        vy = (x[i, 1] - previous[i, 1]) * inverse_dt
-        vz = (x[i, 2] - previous[i, 2]) * inverse_dt
-        v[i, 0], v[i, 1], v[i, 2] = vx, vy, vz
+        for axis in range(3):
+            way, other = x[i, axis] - start[i, axis], x[i, axis] - previous[i, axis]
+            least = max(zero, min(way, other)) if way > zero else min(zero, max(way, other))
+            v[i, axis] = least * inverse_dt
 
 
 @compiled
