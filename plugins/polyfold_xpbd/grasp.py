@@ -19,7 +19,7 @@ RISING, FALLING, HIGHEST = 0.45, 0.25, 0.30
 
 Lower on the way down: a flap that is laid down taut drags what lies below it along.
 """
-LIMP, STIFF = (0.002, 1.3), (0.006, 2.0)
+LIMP, STIFF = (0.002, 1.3), (0.006, 1.8)
 """Height of the held packet [m] and the shape of its path, of a limp and of a stiff packet.
 
 1 is a triangle, 2 half an ellipse. Limp cloth is best laid down along a flat path, which takes it across taut; the
