@@ -1,6 +1,6 @@
 """Measure the whole loop on unseen garments: ``python -m experiments.benchmarks.loop``.
 
-Four standard jobs on the evaluation garments (seeds 0 and up), from a sentence to the final picture, judged against
+Standard jobs on the evaluation garments (seeds 0 and up), from a sentence to the final picture, judged against
 the ideal along lines from ground-truth keypoints; the agents ``noop`` and ``random`` beside the method. The run
 directory can be killed and resumed; running again does only what is missing and prints the table.
 """
@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from polyfold import plugins
 from polyfold.api import attempt, garment
 from polyfold.config import Experiment
 from polyfold.logs import FoldRecord, RunDirectory
@@ -35,6 +36,12 @@ class Job:
 
 JOBS = (
     Job("t-shirt, block", "tshirt", "tshirt-block-left-first", "fold the t-shirt into a rectangular block"),
+    Job(
+        "pants, block",
+        "pants",
+        "pants-block-left-halves",
+        "fold the left leg over onto the right leg, then halve the trousers from the bottom up twice",
+    ),
     Job("pants, half", "pants", "pants-half-left", "fold the left leg of the pants over onto the right leg"),
     Job(
         "square, diagonal",
@@ -47,15 +54,24 @@ JOBS = (
         "square",
         "square-triangle-bottom_left-then-top_left",
         "fold the bottom left corner onto the top right corner, then the top left corner onto the bottom right corner",
-        good=0.85,
     ),
+    Job("square, four corners", "square", "square-corners-all", "fold all four corners into the centre"),
     Job(
         "rectangle, quarters",
         "rectangle",
         "rectangle-half-left-then-bottom",
         "fold the left edge onto the right edge, then fold the bottom edge up to the top edge",
     ),
+    Job(
+        "rectangle, eighths",
+        "rectangle",
+        "rectangle-eighths",
+        "fold the left edge onto the right edge, then fold the bottom edge up to the top edge, "
+        "then fold the left edge onto the right edge",
+    ),
 )
+SUITE = Path(__file__).with_suffix(".toml")
+"""Tasks that are not of an installed suite."""
 AGENTS = ("polyfold", "noop", "random")
 
 
@@ -81,6 +97,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--policy", default="caso", help="policy of the polyfold agent (default: caso)")
     parser.add_argument("--out", type=Path, default=Path("runs/benchmark-loop"), help="run directory, resumed")
     chosen = parser.parse_args(arguments)
+    plugins.register("tasks", "benchmark-loop", str(SUITE))
     jobs = [job for job in JOBS if chosen.job is None or job.task in chosen.job]
     agents = tuple(chosen.agent or AGENTS)
     run = RunDirectory(chosen.out, {"benchmark": "loop", "policy": chosen.policy}, JobRecord)
