@@ -84,7 +84,7 @@ def resolve(
         hz = w0 * previous[i0, 2] + w1 * previous[i1, 2] + w2 * previous[i2, 2] + w3 * previous[i3, 2]
         before = nx * hx + ny * hy + nz * hz
         goal = min(thickness, before)
-        silent = min(np.float32(RECOVERY) * (thickness - goal), recovery) * inverse[k]
+        silent = min(np.float32(RECOVERY) * (thickness - goal), recovery) * inverse[k] if step < count else zero
         push = max(zero, carried + (goal - gap) * inverse[k])
         load[p, 0] = push
         change = push - carried
