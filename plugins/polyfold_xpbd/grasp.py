@@ -122,7 +122,8 @@ def plan_motion(grasp: Grasp, time_step: float) -> Motion:
     """Arcs from pick to place, all arms arriving together, followed by a short hold."""
     span = (grasp.ends - grasp.starts)[:, :2]
     distance = np.hypot(*span.T)
-    swing, lift, length = _arc(float(np.interp(grasp.height, *zip(LIMP, STIFF, strict=True))))
+    (low, limp), (high, stiff) = LIMP, STIFF
+    swing, lift, length = _arc(float(np.interp(grasp.height, (low, high), (limp, stiff))))
     progress = _eased(float(length[-1] * distance.max()), time_step)
     across = np.interp(progress, length / length[-1], swing)
     up = np.interp(progress, length / length[-1], lift)
