@@ -67,7 +67,15 @@ class Motion:
 def take_hold(
     action: Action, positions: NDArray[np.float64], triangles: NDArray[np.uint32], camera: Camera, thickness: float
 ) -> Grasp | None:
-    """The particles at ``positions`` [m], shape (N, 3), under each pick, all layers; None if there are none."""
+    """The particles under each pick, all layers; None if there are none.
+
+    Args:
+        action: picks and places [px].
+        positions: of the particles [m], shape (N, 3).
+        triangles: vertex indices, shape (T, 3), by which plies are counted.
+        camera: which point of the table a pixel is.
+        thickness: of a ply [m].
+    """
     distances = np.empty((action.arms, len(positions)))
     for arm, pick in enumerate(action.picks):
         ray = camera.to_world(pick, positions[:, 2])

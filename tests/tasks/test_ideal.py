@@ -6,9 +6,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from laid_flat import KINDS, SUITE, lay
 
+from experiments.benchmarks.loop import SUITE as LOOP_TASKS
 from polyfold.geometry import FoldLine, iou
 from polyfold.geometry._masks import fill_polygon
-from polyfold.tasks import fold_lines
+from polyfold.tasks import fold_lines, load_suite
 from polyfold.tasks._ideal import fidelity, fold_ideally, fold_step_by_step
 from polyfold.types import SimState
 
@@ -91,6 +92,14 @@ def test_half_and_half_again_leaves_a_quarter_in_four_layers():
     counts = np.bincount(ideal.layer) / len(ideal.layer)
     assert len(counts) == 4
     np.testing.assert_allclose(counts, 0.25, atol=0.06)
+
+
+def test_the_towel_of_the_loop_benchmark_is_folded_in_eight_layers():
+    task = load_suite(str(LOOP_TASKS)).task("rectangle-eighths")
+    garment, state = lay(task.garment, 2000, edge_length=0.01)
+    ideal = fold_ideally(state, garment, fold_lines(task, state.keypoint_pixels()))
+    assert ideal.area == pytest.approx(0.125 * fold_ideally(state, garment, []).area, rel=0.08)
+    assert ideal.layer.max() == 7
 
 
 def test_what_was_lowest_of_the_lifted_comes_to_lie_on_top():

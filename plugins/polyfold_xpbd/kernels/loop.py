@@ -61,6 +61,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         horizon, window = np.float32(HORIZON) * dt, np.float32(LOOK_EVERY) * dt
         zero, crowded = np.float32(0.0), False
         for k in range(begin, end):
+            # Looked ahead before bending acts: contacts take back most of what it adds, which is no travel to foresee.
             if (
                 clock[1] < 0
                 or clock[1] >= HORIZON
