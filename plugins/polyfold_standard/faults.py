@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.garments import Garment
@@ -42,13 +43,14 @@ class FaultySimulator:
     def __init__(self, config: Config) -> None:
         self._config = config
         self._inner: Any = create("simulators", config.inner)
+        self._holds: NDArray[np.bool_] | None = None
 
     def reset(self, garment: Garment, seed: int) -> Observation:
         """Lay the garment flat; the faults follow from the seed and from all that is done.
 
         Agents that act alike meet the same faults, and different tasks on one garment meet different ones.
         """
-        self._history = zlib.crc32(str(seed).encode())
+        self._history, self._holds = zlib.crc32(str(seed).encode()), None
         return self._inner.reset(garment, seed)
 
     def observe(self) -> Observation:
@@ -67,6 +69,7 @@ class FaultySimulator:
         if holds.any():
             picks, places = action.picks[holds], action.places[holds]
             self._inner.execute(Action(picks, picks + share * (places - picks)))
+        self._holds = holds
         if displaced:
             self._displace()
         return self.observe()
@@ -88,10 +91,15 @@ class FaultySimulator:
 
     def state(self) -> SimState:
         """Privileged state."""
-        return self._inner.state()
+        state = self._inner.state()
+        if self._holds is None or (state.grasped is None and self._holds.any()):
+            return state
+        held = iter(state.grasped or ())
+        return replace(state, grasped=tuple(next(held, 0) if holds else 0 for holds in self._holds))
 
     def restore(self, state: SimState) -> None:
         """Return to a state of this garment."""
+        self._holds = None
         self._inner.restore(state)
 
     def close(self) -> None:

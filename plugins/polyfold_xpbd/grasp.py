@@ -12,8 +12,12 @@ from polyfold.types import Action
 
 Floats = NDArray[np.float32]
 
-REACH = 0.015
-"""A gripper holds the cloth, all layers of it, within this distance of the pick [m]."""
+JAW, COVER = 0.015, 0.6
+"""A gripper holds the cloth, all layers of it, within its jaw's half width of the pick [m].
+
+On a coarse mesh it reaches this share of the longest edge, and so a pick on the cloth is never empty: no point of a
+triangle is farther from its nearest corner than 0.58 of that.
+"""
 RISING, FALLING, HIGHEST = 0.45, 0.25, 0.30
 """Height of the path's first and second half as shares of the distance from pick to place; upper limit [m].
 
@@ -38,6 +42,7 @@ class Grasp:
         arms: which arm holds each, uint32, shape (G,).
         offsets: position relative to the arm's pick point [m], float32, shape (G, 3).
         starts, ends: pick and place points of every arm [m], shape (arms, 3).
+        plies: how many each arm holds, shape (arms,); 0 where its grip is empty.
         height: of the thickest held packet, its plies pressed together [m].
     """
 
@@ -46,6 +51,7 @@ class Grasp:
     offsets: Floats
     starts: NDArray[np.float64]
     ends: NDArray[np.float64]
+    plies: NDArray[np.int64]
     height: float
 
 
@@ -65,7 +71,12 @@ class Motion:
 
 
 def take_hold(
-    action: Action, positions: NDArray[np.float64], triangles: NDArray[np.uint32], camera: Camera, thickness: float
+    action: Action,
+    positions: NDArray[np.float64],
+    triangles: NDArray[np.uint32],
+    camera: Camera,
+    thickness: float,
+    longest_edge: float,
 ) -> Grasp | None:
     """The particles under each pick, all layers; None if there are none.
 
@@ -75,27 +86,29 @@ def take_hold(
         triangles: vertex indices, shape (T, 3), by which plies are counted.
         camera: which point of the table a pixel is.
         thickness: of a ply [m].
+        longest_edge: of the mesh [m].
     """
+    reach = max(JAW, COVER * longest_edge)
     distances = np.empty((action.arms, len(positions)))
     for arm, pick in enumerate(action.picks):
         ray = camera.to_world(pick, positions[:, 2])
         distances[arm] = np.hypot(*(positions - ray)[:, :2].T)
     nearest = distances.argmin(axis=0)
-    held = distances.min(axis=0) <= REACH
+    held = distances.min(axis=0) <= reach
     particles = np.flatnonzero(held)
     if len(particles) == 0:
         return None
     arms = nearest[particles]
     starts, ends = np.zeros((action.arms, 3)), np.zeros((action.arms, 3))
-    height = 0.0
+    plies = np.zeros(action.arms)
     for arm in range(action.arms):
         mine = positions[particles[arms == arm]]
         level = float(mine[:, 2].mean()) if len(mine) else 0.0
         above = float(mine[:, 2].max()) - level if len(mine) else 0.0
-        height = max(height, thickness * _plies(particles[arms == arm], positions, triangles))
+        plies[arm] = _plies(particles[arms == arm], positions, triangles)
         starts[arm] = camera.to_world(action.picks[arm], level)
         target = camera.to_world(action.places[arm], level)
-        under = ~held & (np.hypot(*(positions - target)[:, :2].T) <= REACH)
+        under = ~held & (np.hypot(*(positions - target)[:, :2].T) <= reach)
         surface = float(positions[under, 2].max()) + thickness if under.any() else thickness / 2
         ends[arm] = camera.to_world(action.places[arm], surface + above)
     return Grasp(
@@ -104,7 +117,8 @@ def take_hold(
         (positions[particles] - starts[arms]).astype(np.float32),
         starts,
         ends,
-        height,
+        np.rint(plies).astype(np.int64),
+        thickness * float(plies.max()),
     )
 
 

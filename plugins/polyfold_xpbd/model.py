@@ -12,6 +12,8 @@ from polyfold.garments import Fabric, Mesh
 GRAVITY = 9.81
 SHARPEST = 0.5
 """A hinge that is bent by more than this share of what its mesh allows is a crease, however coarse the mesh."""
+LIGHTEST = 3.0
+"""No particle is lighter than the mean by more than this factor: slivers at a curved rim would be flung about."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +29,8 @@ class ClothModel:
         normal_corners: corners whose normal a triangle contributes to, uint32, shape (T, 3) (see ``normal_use``).
         normal_use: 1 where the corner takes its normal from that triangle, float32, shape (T, 3).
         panel: panel of each triangle, int32, shape (T,).
-        edge_length: mean rest length [m].
+        edge_length, longest_edge: mean and greatest rest length [m].
+        lightness: inverse masses, as shares of the mean's, float32, shape (N,).
         bending_rate: angular frequency of the fastest bending [1/s].
     """
 
@@ -40,6 +43,8 @@ class ClothModel:
     normal_use: NDArray[np.float32]
     panel: NDArray[np.int32]
     edge_length: float
+    longest_edge: float
+    lightness: NDArray[np.float32]
     bending_rate: float
 
 
@@ -52,6 +57,7 @@ def build_model(mesh: Mesh, fabric: Fabric) -> ClothModel:
     order = _colour_order(edges, len(rest))
     edges, lengths = edges[order], lengths[order]
     hinges, weights, elastic = _hinges(mesh, triangles, rest, fabric)
+    lightness = _lightness(triangles, rest)
     from_back = np.asarray(mesh.seam)[triangles] & (np.asarray(mesh.panel)[:, None] == 0)
     return ClothModel(
         edges.astype(np.uint32),
@@ -63,8 +69,21 @@ def build_model(mesh: Mesh, fabric: Fabric) -> ClothModel:
         np.where(from_back, 0.0, 1.0).astype(np.float32),
         np.asarray(mesh.panel, np.int32),
         float(lengths.mean()),
-        _fastest(hinges, weights, len(rest)),
+        float(lengths.max()),
+        lightness.astype(np.float32),
+        _fastest(hinges, weights, lightness),
     )
+
+
+def _lightness(triangles: NDArray[np.int64], rest: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Inverse masses of the particles, as shares of the mean's, shape (N,): each has a third of its triangles.
+
+    The rim's particles stand for half as much cloth as others; as heavy as they, they would make a hanging edge limp.
+    """
+    u, w = (rest[triangles[:, k]] - rest[triangles[:, 0]] for k in (1, 2))
+    areas = np.abs(u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0])
+    masses = np.bincount(triangles.ravel(), np.repeat(areas, 3), len(rest))
+    return np.minimum(masses.mean() / np.maximum(masses, 1e-12), LIGHTEST)
 
 
 def _unique_edges(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -119,12 +138,14 @@ def _hinges(
     return hinges, stencil * root[:, None], elastic
 
 
-def _fastest(hinges: NDArray[np.int64], weights: NDArray[np.float64], count: int) -> float:
+def _fastest(hinges: NDArray[np.int64], weights: NDArray[np.float64], lightness: NDArray[np.float64]) -> float:
     """Angular frequency [1/s] of the stiffest mode of all hinges together, by power iteration."""
+    count = len(lightness)
     from scipy.sparse import csr_array
 
     if len(hinges) == 0:
         return 0.0
+    weights = weights * np.sqrt(lightness)[hinges]
     stencils = csr_array((weights.ravel(), hinges.ravel(), 4 * np.arange(len(hinges) + 1)), shape=(len(hinges), count))
     shape = np.random.default_rng(0).standard_normal(count)
     for _ in range(40):

@@ -23,8 +23,9 @@ class XpbdSimulator:
     """Cloth on a table under a camera. Implements :class:`polyfold.plugins.interfaces.Simulator`.
 
     The garment is laid with its bounding circle in the middle of the image, turned by an angle drawn from the seed.
-    Grippers hold all layers within 15 mm of a pick and lay them down at the place along half an ellipse. A pick off
-    the cloth grasps nothing: its arm moves empty, and if no arm holds cloth the fold changes nothing.
+    Grippers hold all layers within 15 mm of a pick, or farther on a coarser mesh, and lay them down at the place
+    along an arc. A pick off the cloth grasps nothing: its arm moves empty, and if no arm holds cloth the fold changes
+    nothing. The state says how many plies each arm held.
     """
 
     class Config(BaseModel):
@@ -60,6 +61,7 @@ class XpbdSimulator:
         self.config = config or self.Config()
         self._solver: Solver | None = None
         self._garment: Garment | None = None
+        self._grasped: tuple[int, ...] | None = None
         self._recorder: tuple[Callable[[Observation], None], float] | None = None
 
     def reset(self, garment: Garment, seed: int) -> Observation:
@@ -71,7 +73,7 @@ class XpbdSimulator:
         centre = (flat.min(axis=0) + flat.max(axis=0)) / 2
         radius = float(np.hypot(*(flat - centre).T).max())
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        self._garment, self._seed, self._actions = garment, seed, []
+        self._garment, self._seed, self._actions, self._grasped = garment, seed, [], None
         self._camera = Camera.framing(2 * radius / self.config.fill)
         self._order, mesh = _renumbered(garment.mesh, self.config.order)
         self._rank = np.argsort(self._order)
@@ -102,7 +104,9 @@ class XpbdSimulator:
         action.check_inside(self._camera)
         before = self.state()
         self._actions.append(np.concatenate([action.picks, action.places]).round(3).tolist())
-        if not solver.fold(action, self._camera, *self._frames()):
+        grasp = solver.grip(action, self._camera)
+        self._grasped = (0,) * action.arms if grasp is None else tuple(grasp.plies.tolist())
+        if grasp is not None and not solver.fold(grasp, *self._frames()):
             reproduction = (
                 f"garment {garment.name!r} (seed {garment.seed}), reset seed {self._seed}, {self.config!r}, "
                 f"picks and places so far {self._actions}"
@@ -130,7 +134,7 @@ class XpbdSimulator:
         solver, _ = self._ready()
         extra: dict[str, Any] = {**solver.memory(), "actions": tuple(self._actions)}
         positions, velocities = solver.positions()[self._rank], solver.velocities()[self._rank]
-        return SimState(positions, velocities, self._keypoints, self._camera, extra)
+        return SimState(positions, velocities, self._keypoints, self._camera, extra, self._grasped)
 
     def restore(self, state: SimState) -> None:
         """Return to a state of this garment, so that several picks can be tried from one."""
@@ -142,7 +146,7 @@ class XpbdSimulator:
             )
         solver.set_state(state.positions[self._order], state.velocities[self._order], state.extra)
         self._camera, self._keypoints = state.camera, state.keypoints
-        self._actions = list(state.extra.get("actions", ()))
+        self._actions, self._grasped = list(state.extra.get("actions", ())), state.grasped
 
     def close(self) -> None:
         """Release the solver; call :meth:`reset` to go on."""

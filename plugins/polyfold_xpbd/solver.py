@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from polyfold.garments import Fabric, Mesh
 from polyfold.geometry import Camera
 from polyfold.types import Action
-from polyfold_xpbd.grasp import plan_motion, take_hold
+from polyfold_xpbd.grasp import Grasp, plan_motion, take_hold
 from polyfold_xpbd.kernels.loop import DIVERGED, SETTLED, advance
 from polyfold_xpbd.kernels.vectors import vertex_normals
 from polyfold_xpbd.model import ClothModel, build_model
@@ -92,13 +92,15 @@ class Solver:
         self._previous, self._listed, self._foreseen = self.x.copy(), self.x.copy(), self.v.copy()
         self._start, self._rested = self.x.copy(), self.x.copy()
         self._normals = np.zeros((count, 3), np.float32)
-        self._mobility = np.ones(count, np.float32)
+        self._mobility = self._model.lightness.copy()
         edges, hinges = len(self._model.edges), len(self._model.hinges)
         self._sharp = np.zeros(edges, np.bool_)
+        self._stray, self._order = np.zeros(count, np.int32), np.zeros(count, np.int32)
+        self._again = np.zeros(count, np.bool_), np.zeros(edges, np.bool_), np.zeros(count, np.bool_)
         self._vertex_range = np.zeros(count, np.int32), np.zeros(count, np.int32)
         self._edge_range = np.zeros(edges, np.int32), np.zeros(edges, np.int32)
         room = PAIRS_PER_PARTICLE * count
-        self._first = np.zeros(room, np.int32)
+        self._first, self._moved = np.zeros(room, np.int32), np.zeros(room, np.int32)
         self._pairs, self._old_pairs = _pair_memory(room), _pair_memory(room)
         self._contacts = (
             np.zeros((room, 4), np.int32), np.zeros((room, 4), np.float32),
@@ -174,23 +176,24 @@ class Solver:
             starts[owners], stops[owners] = begin + at, begin + at + counts
         self._clock[2], self._clock[3] = vertex_pairs, pairs
         self._set[:], self._rest[:] = memory.get("crease", 0.0), memory.get("crease_rest", 0.0)
-        self._mobility[:] = 1.0
+        self._mobility[:] = self._model.lightness
 
     def pin(self, particles: NDArray[np.int64]) -> None:
         """Hold particles, indices of shape (K,), where they are until another state is set."""
         self._mobility[particles] = 0.0
 
-    def fold(self, action: Action, camera: Camera, on_frame: Callable[[], None] | None, interval: float) -> bool:
-        """Move what the picks hold to the places and let it come to rest. False if it diverged."""
-        grasp = take_hold(action, self.positions(), self.triangles, camera, self._thickness)
-        if grasp is None:
-            return True
+    def grip(self, action: Action, camera: Camera) -> Grasp | None:
+        """What the grippers would hold; None if there is no cloth under any pick."""
+        return take_hold(action, self.positions(), self.triangles, camera, self._thickness, self._model.longest_edge)
+
+    def fold(self, grasp: Grasp, on_frame: Callable[[], None] | None, interval: float) -> bool:
+        """Move what the grippers hold to the places and let it come to rest. False if it diverged."""
         motion = plan_motion(grasp, self.dt)
         self._mobility[grasp.particles] = 0.0
         held = (grasp.particles, grasp.offsets, grasp.arms, motion.directions, motion.path, motion.turns)
         held += self._tethers.tie(grasp.particles, grasp.arms, grasp.offsets)
         alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval)
-        self._mobility[:] = 1.0
+        self._mobility[:] = self._model.lightness
         return alive and self.settle(LONGEST_SETTLING, on_frame, interval)
 
     def settle(self, longest: float, on_frame: Callable[[], None] | None = None, interval: float = 0.0) -> bool:
@@ -236,8 +239,9 @@ class Solver:
         return advance(
             self.x, self.v, self._previous, self._start, self._mobility, self._normals, model.edges, model.rest_lengths,
             model.hinges, model.hinge_weights, model.elastic, self._set, self._rest, model.normal_corners, model.panel,
-            model.normal_use, self._clock, self._listed, self._foreseen, self._rested, self._sharp, *self._vertex_range,
-            *self._edge_range, self._first, *self._pairs, *self._old_pairs, *self._contacts, self._table_load, *held,
+            model.normal_use, self._clock, self._listed, self._foreseen, self._rested, self._sharp, self._stray,
+            self._order, *self._again, self._moved, *self._vertex_range, *self._edge_range, self._first, *self._pairs,
+            *self._old_pairs, *self._contacts, self._table_load, *held,
             first, last, self._settings, np.float32(damping), np.float32(rest_speed),
         )  # fmt: skip
 

@@ -64,11 +64,17 @@ class Printer:
         )
         times = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
         number = f"{step.index + 1} (again)" if step.retry else f"{step.index + 1}"
-        self._flush(f"  fold {number}: {where}, {step.action.arms} arm(s); {times}")
+        self._flush(f"  fold {number}: {where}, {step.action.arms} arm(s){_empty_grips(step)}; {times}")
 
     def _flush(self, line: str) -> None:
         print(line)
         sys.stdout.flush()
+
+
+def _empty_grips(step: Step) -> str:
+    picks = enumerate(zip(step.after.grasped or (), step.action.picks, strict=False), 1)
+    empty = [f"arm {arm} at ({pick[0]:.0f}, {pick[1]:.0f})" for arm, (plies, pick) in picks if plies == 0]
+    return f", no cloth in the grip of {' and '.join(empty)}" if empty else ""
 
 
 def _print_result(episode: polyfold.Episode, out: Path | None) -> None:

@@ -50,6 +50,7 @@ class StepRecord(LogRecord):
         notes: what grounding had to say about the picture.
         retry: whether it repeats the fold before, which was seen to have failed.
         values_picks: whether the policy rated every place to pick.
+        grasped: how many plies each arm held, 0 for an empty grip; None if the simulator doesn't say.
     """
 
     subgoal: str | None
@@ -60,6 +61,7 @@ class StepRecord(LogRecord):
     notes: tuple[str, ...] = ()
     retry: bool = False
     values_picks: bool = False
+    grasped: tuple[int, ...] | None = None
 
 
 class CallRecord(LogRecord):

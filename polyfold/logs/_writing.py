@@ -130,6 +130,7 @@ def _step(step: Step) -> StepRecord:
         notes=tuple(step.scene.notes) if step.scene else (),
         retry=step.retry,
         values_picks=step.action_map is not None,
+        grasped=step.after.grasped,
     )
 
 

@@ -24,6 +24,8 @@ class SimState:
         keypoints: named ground-truth keypoint -> particle index.
         camera: the camera in use.
         extra: simulator-specific arrays that :meth:`Simulator.restore` needs.
+        grasped: how many plies each arm held in the fold that led here, 0 for an empty grip; None before a fold, or if
+            the simulator doesn't say.
     """
 
     positions: Floats
@@ -31,6 +33,7 @@ class SimState:
     keypoints: Mapping[str, int]
     camera: Camera
     extra: Mapping[str, Any] = field(default_factory=dict)
+    grasped: tuple[int, ...] | None = None
 
     def keypoint_positions(self) -> dict[str, Floats]:
         """Named keypoint -> position [m], shape (3,)."""

@@ -47,6 +47,18 @@ def test_the_fabric_is_chosen_and_recorded(polyfold):
     assert thicker["garment"]["fabric"]["name"] == "poplin"
 
 
+def test_an_empty_grip_is_said_and_recorded(polyfold, tmp_path):
+    fold = ("fold", "fold the square in half", "--garment", "square", *COARSE)
+    good = polyfold(*fold, "--out", tmp_path / "good")
+    assert "no cloth" not in good.out
+    missing = ("--set", "simulator.miss=1", "--set", "agent.recover=false")
+    missed = polyfold(*fold, "--simulator", "faulty", *missing, "--out", tmp_path / "missed")
+    assert "no cloth in the grip of arm 1 at (" in missed.out
+    for name, plies in (("good", 1), ("missed", 0)):
+        (step,) = json.loads((tmp_path / name / "episode.json").read_text())["steps"]
+        assert step["grasped"] == [plies] * len(step["picks"])
+
+
 def test_a_garment_keeps_its_fabric_unless_one_is_named():
     import polyfold
 

@@ -168,6 +168,32 @@ def test_pick_off_the_cloth_changes_nothing(simulator, garments):
     np.testing.assert_array_equal(simulator.state().positions, before)
 
 
+def test_the_state_says_how_many_plies_each_arm_held(simulator, garments):
+    simulator.reset(garments["tshirt"], 2)
+    assert simulator.state().grasped is None
+    hem = simulator.state().keypoint_pixels()["hem_left"]
+    simulator.execute(Action(np.array([hem, [5.0, 5.0]]), np.array([[hem[0], hem[1] - 60.0], [60.0, 5.0]])))
+    after = simulator.state()
+    assert after.grasped == (2, 0)
+    simulator.reset(garments["tshirt"], 2)
+    simulator.restore(after)
+    assert simulator.state().grasped == (2, 0)
+
+
+@pytest.mark.parametrize("edge_length", [0.03, 0.05])
+def test_a_pick_on_the_cloth_is_never_empty_however_coarse_the_mesh(simulator, edge_length):
+    square = plugins.generate_garment("square", SEED, edge_length)
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        simulator.reset(square, 2)
+        corners = np.array(list(simulator.state().keypoint_pixels().values()))
+        pick = rng.dirichlet(np.ones(len(corners))) @ corners
+        before = simulator.state().positions
+        simulator.execute(Action(pick[None], pick[None] + [0.0, 40.0]))
+        assert simulator.state().grasped == (1,)
+        assert np.linalg.norm(simulator.state().positions - before, axis=1).max() > 0.02
+
+
 def test_action_outside_the_image_is_refused_and_changes_nothing(simulator, garments):
     simulator.reset(garments["square"], 2)
     before = simulator.state().positions

@@ -5,6 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from polyfold_xpbd.solver import _EMPTY, SETTLING
 
 from experiments.benchmarks.cloth.measures import crossing_edges, layer_order, strain
 from experiments.benchmarks.cloth.reality.bench import Cloth
@@ -206,6 +207,50 @@ def test_a_crease_is_remembered_when_the_cloth_is_opened_again():
 def corners(simulator):
     keypoints = simulator.state().keypoint_positions()
     return np.array([keypoints["bottom_left"], keypoints["bottom_right"]])
+
+
+def _near(positions, triangles, within):
+    """Pairs of a vertex over or under the inside of a triangle of other cloth and less than ``within`` [m] away."""
+    a, b, c = (positions[triangles[:, k]] for k in range(3))
+    u, w = b - a, c - a
+    n = np.cross(u, w)
+    square = (n**2).sum(axis=1)
+    found = set()
+    for i, point in enumerate(positions):
+        r = point - a
+        beta, gamma = (np.cross(r, w) * n).sum(axis=1) / square, (np.cross(u, r) * n).sum(axis=1) / square
+        over = (beta > 0) & (gamma > 0) & (beta + gamma < 1) & ~(triangles == i).any(axis=1)
+        over &= np.abs((r * n).sum(axis=1)) < within * np.sqrt(square)
+        found |= {(i, int(t)) for t in np.flatnonzero(over)}
+    return found
+
+
+@pytest.mark.parametrize("edge_length", [0.0125, 0.0155])
+def test_what_comes_near_what_strayed_is_listed_though_it_did_not_stray_itself(edge_length):
+    """In between, only pairs of what left its foreseen path are listed anew."""
+    cloth = folded(made("poplin"), edge_length)
+    simulator = laid(cloth.garment)
+    simulator.restore(cloth.half)
+    solver = simulator._solver
+    solver.wait(2 * solver.dt)
+    rng = np.random.default_rng(0)
+    strayed = rng.choice(len(solver.x), 12, replace=False)
+    # Sideways by half an edge: onto triangles and under vertices that it was not near before.
+    turn = rng.uniform(0, 2 * np.pi, 12)
+    solver.x[strayed, :2] += 0.5 * edge_length * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    positions = solver.positions()
+    solver._advance(_EMPTY, 2, 3, SETTLING, 0.0)
+    memory = solver.memory()
+    vertex_pairs = memory["pair_kinds"][0]
+    listed = set(zip(memory["pair_first"][:vertex_pairs], memory["pair_second"][:vertex_pairs], strict=True))
+    triangles = solver.triangles.astype(int)
+    touching = {
+        (i, t)
+        for i, t in _near(positions, triangles, 2 * cloth.garment.fabric.thickness)
+        if i in strayed or np.isin(triangles[t], strayed).any()
+    }
+    assert sum(i not in strayed for i, _ in touching) > 12
+    assert touching <= listed
 
 
 def test_a_thicker_fabric_makes_a_higher_packet():

@@ -20,7 +20,7 @@ PICK_RADIUS = 8.0
 COVERED = 0.4
 """Share of a pick's neighbourhood that is still cloth where the arm took nothing."""
 
-UNEVEN = ((1.0, 0.35), (0.35, 0.7), (0.0, 1.0))
+UNEVEN = ((1.0, 0.2), (0.35, 0.7), (0.0, 1.0))
 """How much more of the flap came down at one place than at the other, and what share of the proof is enough then."""
 
 LANDED = 0.5

@@ -11,7 +11,7 @@ import numpy as np
 
 from polyfold_xpbd.kernels.vectors import compiled, shift
 
-KEPT_FRICTION, MOST = 0.9, 60.0
+KEPT_FRICTION, MOST = 0.9, 30.0
 """Share of friction that the next substep starts with: kept whole, it is a spring without a damper.
 
 And the most of a push, in what gravity moves a particle by in a substep. Where folds ask for the impossible, pushes
@@ -27,7 +27,7 @@ def warm_start(x, mobility, count, bodies, responses, normals, source, load, tab
 
     Args:
         x: positions [m], shape (N, 3), changed.
-        mobility: 0 for held particles and 1 for free ones, shape (N,).
+        mobility: inverse masses, as shares of the mean's; 0 for held particles, shape (N,).
         count, bodies, responses, normals, source: the contacts, see :mod:`polyfold_xpbd.kernels.touching`.
         load, table_load: pushes and friction [m] per pair, shape (P, 4), and per particle, shape (N, 3), changed.
         fall: what gravity moves a particle by in a substep [m].
@@ -35,9 +35,11 @@ def warm_start(x, mobility, count, bodies, responses, normals, source, load, tab
     most = np.float32(MOST) * fall
     for i in range(x.shape[0]):
         if table_load[i, 0] != np.float32(0.0):
-            table_load[i, 0] *= mobility[i]
-            table_load[i, 1] *= np.float32(KEPT_FRICTION) * mobility[i]
-            table_load[i, 2] *= np.float32(KEPT_FRICTION) * mobility[i]
+            if mobility[i] == np.float32(0.0):
+                table_load[i, :] = np.float32(0.0)
+                continue
+            table_load[i, 1] *= np.float32(KEPT_FRICTION)
+            table_load[i, 2] *= np.float32(KEPT_FRICTION)
             x[i, 0] += table_load[i, 1]
             x[i, 1] += table_load[i, 2]
             x[i, 2] += table_load[i, 0]
@@ -116,7 +118,7 @@ def table(x, previous, mobility, load, floor, friction):
 
     Args:
         x, previous: positions [m], shape (N, 3), now and before the substep; ``x`` is changed.
-        mobility: 0 for held particles and 1 for free ones, shape (N,).
+        mobility: inverse masses, as shares of the mean's; 0 for held particles, shape (N,).
         load: the push and friction [m] that each particle got in this substep so far, shape (N, 3), changed.
         floor: lowest height of a particle [m].
         friction: coefficient.

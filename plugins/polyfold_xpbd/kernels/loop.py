@@ -10,17 +10,16 @@ import numpy as np
 from numba import njit
 
 from polyfold_xpbd.kernels.contact import resolve, table, warm_start
-from polyfold_xpbd.kernels.motion import carry, damp, is_finite, predict, rests, strays, velocities
-from polyfold_xpbd.kernels.pairs import list_edge_pairs, list_vertex_pairs, mark_sharp
+from polyfold_xpbd.kernels.listing import CROWDED, HORIZON, IMPOSSIBLE, PARTIAL, WHOLE, list_anew
+from polyfold_xpbd.kernels.motion import carry, damp, is_finite, predict, rests, velocities
 from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, stretch
-from polyfold_xpbd.kernels.touching import find_edge_contacts, find_vertex_contacts
-from polyfold_xpbd.kernels.vectors import vertex_normals
+from polyfold_xpbd.kernels.touching import find_edge_contacts, find_vertex_contacts, keep_contacts
 
 RUNNING, SETTLED, DIVERGED = 0, 1, 2
 LOOK_EVERY = 8
 """Substeps between looks at which listed pairs touch, where and which way."""
-HORIZON = 16
-"""Substeps for which a list of pairs looks ahead."""
+STRETCHED = 1.5
+"""No edge is ever longer than the longest at rest by more than this factor."""
 REST_OVER = 40
 """Substeps over which the cloth is watched for rest."""
 
@@ -37,7 +36,8 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
     @njit(cache=True, error_model="numpy")
     def advance(
         x, v, previous, start, mobility, normals, edges, rest_lengths, hinges, hinge_weights, elastic, set_curvature,
-        rest, corners, panel, use, clock, listed, foreseen, rested, sharp, vertex_starts, vertex_stops, edge_starts,
+        rest, corners, panel, use, clock, listed, foreseen, rested, sharp, stray, order,
+        vertices_again, edges_again, close, moved, vertex_starts, vertex_stops, edge_starts,
         edge_stops, first, second, side, over, load, old_second, old_side, old_over, old_load, bodies, weights,
         responses, contact_normals, inverse, source, table_load, grasped, offsets, arm, directions, path, turns, tied,
         anchors, lengths, begin, end, settings, damping, rest_speed,
@@ -58,60 +58,49 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         table_friction, cloth_friction, recovery, fastest = settings[4], settings[5], settings[6], settings[7]
         inverse_dt = np.float32(1.0) / dt
         floor = np.float32(0.5) * thickness
-        horizon, window = np.float32(HORIZON) * dt, np.float32(LOOK_EVERY) * dt
-        zero, crowded = np.float32(0.0), False
+        window = np.float32(LOOK_EVERY) * dt
+        widest = np.float32(STRETCHED) * rest_lengths.max()
         for k in range(begin, end):
             # Looked ahead before bending acts: contacts take back most of what it adds, which is no travel to foresee.
-            if (
-                clock[1] < 0
-                or clock[1] >= HORIZON
-                or strays(x, listed, foreseen, np.float32(clock[1]) * dt, np.float32(0.5) * slack)
-            ):
-                if not is_finite(x):
-                    return DIVERGED, k
-                vertex_normals(x, corners, use, normals)
-                mark_sharp(normals, edges, sharp, settings[10])
-                count = clock[3]
-                old_second[:count], old_side[:count] = second[:count], side[:count]
-                old_over[:count], old_load[:count] = over[:count], load[:count]
-                clock[1] = 0
-                # What flies wildly comes near everything in that time: then there is room for what is near now, and
-                # the next substep lists anew.
-                for ahead in (horizon, zero):
-                    clock[2] = list_vertex_pairs(
-                        x, v, normals, ahead, thickness + slack, cell, corners, thickness, vertex_starts, vertex_stops,
-                        old_second, old_side, old_over, old_load, first, second, side, over, load,
-                    )  # fmt: skip
-                    crowded = ahead == zero
-                    if clock[2] >= 0:
-                        break
-                if clock[2] < 0:
-                    return DIVERGED, k
-                for ahead in (horizon, zero):
-                    clock[3] = list_edge_pairs(
-                        x, v, ahead, thickness + slack, cell, edges, sharp, edge_starts, edge_stops, clock[2],
-                        old_second, old_side, old_over, old_load, first, second, side, over, load,
-                    )  # fmt: skip
-                    crowded = crowded or ahead == zero
-                    if clock[3] >= 0:
-                        break
-                if clock[3] < 0:
-                    return DIVERGED, k
-                listed[:, :], foreseen[:, :] = x, v
+            listing = list_anew(
+                x, v, normals, dt, thickness, slack, cell, widest, edges, corners, use, clock, listed, foreseen, sharp,
+                settings[10], stray, order, vertices_again, edges_again, close, moved, vertex_starts, vertex_stops,
+                edge_starts, edge_stops, first, second, side, over, load, old_second, old_side, old_over, old_load,
+            )  # fmt: skip
+            if listing == IMPOSSIBLE:
+                return DIVERGED, k
             if clock[1] % LOOK_EVERY == 0:
                 crease(x, hinges, hinge_weights, elastic, settings[8], set_curvature, rest)
-                found = find_vertex_contacts(
-                    x, v, window, mobility, corners, panel, thickness, clock[2], first, second, side, over, load,
+            if clock[1] % LOOK_EVERY == 0 or listing in (WHOLE, CROWDED):
+                clock[4] = find_vertex_contacts(
+                    x, v, window, mobility, corners, panel, thickness, 0, clock[2], 0, first, second, side, over, load,
                     bodies, weights, responses, contact_normals, inverse, source,
                 )  # fmt: skip
                 clock[4] = find_edge_contacts(
-                    x, v, window, mobility, edges, thickness, clock[2], clock[3], found, first, second, side, over,
+                    x, v, window, mobility, edges, thickness, clock[2], clock[3], clock[4], first, second, side, over,
                     load, bodies, weights, responses, contact_normals, inverse, source,
                 )  # fmt: skip
+            elif listing == PARTIAL:
+                clock[4] = keep_contacts(
+                    clock[4], moved, bodies, weights, responses, contact_normals, inverse, source
+                )  # fmt: skip
+                for i in order:
+                    if vertices_again[i]:
+                        clock[4] = find_vertex_contacts(
+                            x, v, window, mobility, corners, panel, thickness, vertex_starts[i], vertex_stops[i],
+                            clock[4], first, second, side, over, load, bodies, weights, responses, contact_normals,
+                            inverse, source,
+                        )  # fmt: skip
+                for e in range(edges.shape[0]):
+                    if edges_again[e]:
+                        clock[4] = find_edge_contacts(
+                            x, v, window, mobility, edges, thickness, edge_starts[e], edge_stops[e], clock[4], first,
+                            second, side, over, load, bodies, weights, responses, contact_normals, inverse, source,
+                        )  # fmt: skip
             damp(v, dt, damping)
-            bend(x, v, previous, hinges, hinge_weights, rest, settings[9], dt)
+            bend(x, v, mobility, previous, hinges, hinge_weights, rest, settings[9], dt)
             clock[0] += 1
-            clock[1] = HORIZON if crowded else clock[1] + 1
+            clock[1] = HORIZON if listing == CROWDED else clock[1] + 1
             predict(x, v, previous, start, mobility, dt, fastest)
             if grasped.shape[0] > 0:
                 carry(x, grasped, offsets, arm, directions, path, turns, k)

@@ -30,7 +30,7 @@ def predict(x, v, previous, start, mobility, dt, fastest):
     Args:
         x, v: positions [m] and velocities [m/s], shape (N, 3); ``x`` is changed.
         previous, start: get the positions before [m], shape (N, 3).
-        mobility: 0 for held particles and 1 for free ones, shape (N,).
+        mobility: inverse masses, as shares of the mean's; 0 for held particles, shape (N,).
         dt: the substep [s].
         fastest: top speed [m/s].
     """
@@ -91,18 +91,6 @@ def rests(x, rested, limit):
             moved += way * way
             rested[i, axis] = x[i, axis]
     return moved < x.shape[0] * limit * limit
-
-
-@compiled
-def strays(x, listed, foreseen, elapsed, limit):
-    """Whether a particle is more than ``limit`` [m] off where it was foreseen ``elapsed`` [s] after ``listed``."""
-    for i in range(x.shape[0]):
-        dx = x[i, 0] - listed[i, 0] - elapsed * foreseen[i, 0]
-        dy = x[i, 1] - listed[i, 1] - elapsed * foreseen[i, 1]
-        dz = x[i, 2] - listed[i, 2] - elapsed * foreseen[i, 2]
-        if dx * dx + dy * dy + dz * dz > limit * limit:
-            return True
-    return False
 
 
 @compiled

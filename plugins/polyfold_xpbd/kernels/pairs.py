@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polyfold_xpbd.kernels.near import ROOM, by_height, gather, sort_by_cell, swept_boxes
+from polyfold_xpbd.kernels.near import ROOM, gather, sort_by_cell, swept_boxes, with_any
 from polyfold_xpbd.kernels.vectors import compiled
 
 FLATTER = 0.5
@@ -24,7 +24,7 @@ COVERED, UNBENT, BEHIND = -0.02, 0.8, 0.7
 
 Behind is what is farther than it by this many thicknesses.
 """
-CELL = 0.4
+CELL = 0.5
 """Side of a cell that boxes are sorted into, in edge lengths."""
 
 
@@ -44,15 +44,15 @@ def mark_sharp(normals, edges, sharp, bent):
 
 
 @compiled
-def _frames(x, v, corners, frames):
-    """What tells how a point lies to a triangle, into ``frames``, shape (T, 12).
+def _frames(x, v, corners, chosen, frames):
+    """What tells how a point lies to the chosen triangles, into ``frames``, shape (K, 12).
 
     Unit normal; the vectors whose products with the way from the first corner are the second and third barycentric
     coordinates [1/m]; mean velocity [m/s].
     """
     third, one = np.float32(1.0 / 3.0), np.float32(1.0)
-    for t in range(corners.shape[0]):
-        a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
+    for t in range(chosen.shape[0]):
+        a, b, c = corners[chosen[t], 0], corners[chosen[t], 1], corners[chosen[t], 2]
         ux, uy, uz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
         wx, wy, wz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
         nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
@@ -71,40 +71,56 @@ def _frames(x, v, corners, frames):
 
 @compiled
 def list_vertex_pairs(
-    x, v, normals, horizon, reach, edge_length, corners, thickness,
-    starts, stops, old_second, old_side, old_over, old_load, first, second, side, over, load,
+    x, v, normals, horizon, reach, edge_length, corners, thickness, order, close, again,
+    starts, stops, moved, old_second, old_side, old_over, old_load, first, second, side, over, load,
 ):  # fmt: skip
-    """List vertices and triangles that come within ``reach`` [m] of each other, from the table upwards.
+    """List vertices and triangles that come within ``reach`` [m] of each other, vertex by vertex in ``order``.
 
-    What lies behind another ply is left out: the vertex can't get there before that ply does.
+    What lies behind another ply is left out: the vertex can't get there before that ply does. Vertices that are not
+    marked in ``again``, shape (N,), keep the pairs that they have, and ``moved``, shape (P,), says which these are now.
+    ``close``, shape (N,), marks all particles of triangles that the others may be near.
 
     Returns:
         The number of pairs; -1 if there is no room for them.
     """
-    boxes = swept_boxes(x, v, horizon, corners, reach)
+    chosen = with_any(corners, close)
+    boxes = swept_boxes(x, v, horizon, corners, chosen, reach)
     cell = np.float32(CELL) * edge_length
     start, members, in_order, columns, rows, grid = sort_by_cell(boxes, cell)
-    frames = np.empty((corners.shape[0], 12), np.float32)
-    _frames(x, v, corners, frames)
+    asking = np.zeros(chosen.shape[0], np.bool_)
+    frames = np.empty((chosen.shape[0], 12), np.float32)
+    _frames(x, v, corners, chosen, frames)
     zero, one, slope = np.float32(0.0), np.float32(1.0), np.float32(1.3) / edge_length
     away, upper = np.empty(ROOM, np.float32), np.empty(ROOM, np.bool_)
     near = np.empty(ROOM, np.int32)
-    box = np.empty(6, np.float32)
+    box, hits = np.empty(6, np.float32), np.zeros(ROOM, np.uint8)
     new_starts, new_stops = np.zeros(x.shape[0], np.int32), np.zeros(x.shape[0], np.int32)
     pairs = 0
-    for i in by_height(x, thickness):
+    for i in order:
         new_starts[i] = pairs
+        if not again[i]:
+            if pairs + stops[i] - starts[i] > first.shape[0]:
+                return -1
+            for k in range(starts[i], stops[i]):
+                first[pairs], second[pairs], side[pairs], over[pairs] = i, old_second[k], old_side[k], old_over[k]
+                for m in range(4):
+                    load[pairs, m] = old_load[k, m]
+                moved[k] = pairs
+                pairs += 1
+            new_stops[i] = pairs
+            continue
         for axis in range(3):
             ahead = x[i, axis] + horizon * v[i, axis]
             box[axis], box[axis + 3] = min(x[i, axis], ahead), max(x[i, axis], ahead)
-        found = gather(box, cell, start, members, in_order, columns, rows, grid, near)
+        found = gather(box, cell, start, members, in_order, columns, rows, grid, -1, asking, hits, near)
         if pairs + found > first.shape[0]:
             return -1
         kept, cover_above, cover_below = 0, np.float32(1.0), np.float32(1.0)
         for n in range(found):
             t = near[n]
-            a = corners[t, 0]
-            if i == a or i == corners[t, 1] or i == corners[t, 2]:
+            triangle = chosen[t]
+            a = corners[triangle, 0]
+            if i == a or i == corners[triangle, 1] or i == corners[triangle, 2]:
                 continue
             rx, ry, rz = x[i, 0] - x[a, 0], x[i, 1] - x[a, 1], x[i, 2] - x[a, 2]
             height = frames[t, 0] * rx + frames[t, 1] * ry + frames[t, 2] * rz
@@ -119,7 +135,7 @@ def list_vertex_pairs(
             margin = slope * (reach + np.sqrt(mx * mx + my * my + mz * mz))
             if min(beta, min(gamma, one - beta - gamma)) < -margin:
                 continue
-            near[kept] = t
+            near[kept] = triangle
             away[kept] = height
             # Which way a triangle is from here, by its own normal turned to this vertex's.
             facing = frames[t, 0] * normals[i, 0] + frames[t, 1] * normals[i, 1] + frames[t, 2] * normals[i, 2]
@@ -176,48 +192,74 @@ def _may_meet(x, v, horizon, reach, edge_length, a, b, c, d):
 
 
 @compiled
+def _recall(p, other, begin, end, old_second, old_side, old_over, old_load, side, over, load):
+    """Let pair p take over what the pair with ``other`` among the old ones from ``begin`` to ``end`` remembers."""
+    for k in range(begin, end):
+        if old_second[k] == other:
+            side[p], over[p] = old_side[k], old_over[k]
+            for m in range(4):
+                load[p, m] = old_load[k, m]
+
+
+@compiled
 def list_edge_pairs(
-    x, v, horizon, reach, edge_length, edges, sharp, starts, stops, pairs,
+    x, v, horizon, reach, edge_length, edges, sharp, whole, close, again, starts, stops, pairs, moved,
     old_second, old_side, old_over, old_load, first, second, side, over, load,
 ):  # fmt: skip
     """List edges that come within ``reach`` [m] of each other where at least one lies in a ``sharp`` bend, shape (E,).
 
-    They are added to the ``pairs`` listed already.
+    They are added to the ``pairs`` listed already. Unless the ``whole`` list is made anew, pairs stay of which neither
+    edge is marked in ``again``, shape (E,), and ``moved``, shape (P,), says which they are now. ``close``, shape (N,),
+    marks all particles of edges that the others may be near.
 
     Returns:
         The number of pairs; -1 if there is no room for them.
     """
-    boxes = swept_boxes(x, v, horizon, edges, reach)
+    chosen = with_any(edges, close)
+    boxes = swept_boxes(x, v, horizon, edges, chosen, reach)
     cell = np.float32(CELL) * edge_length
     start, members, in_order, columns, rows, grid = sort_by_cell(boxes, cell)
+    place = np.full(edges.shape[0], -1, np.int32)
+    asking = np.empty(chosen.shape[0], np.bool_)
+    for m in range(chosen.shape[0]):
+        place[chosen[members[m]]] = m
+        asking[m] = sharp[chosen[members[m]]] if whole else again[chosen[members[m]]]
     near = np.empty(ROOM, np.int32)
-    box = np.empty(6, np.float32)
+    box, hits = np.empty(6, np.float32), np.zeros(ROOM, np.uint8)
     new_starts, new_stops = np.zeros(edges.shape[0], np.int32), np.zeros(edges.shape[0], np.int32)
     for e in range(edges.shape[0]):
         new_starts[e] = pairs
-        if sharp[e]:
+        if sharp[e] if whole else again[e]:
+            mine = place[e]
             for axis in range(3):
-                box[axis], box[axis + 3] = boxes[e, axis] + reach, boxes[e, axis + 3] - reach
-            found = gather(box, cell, start, members, in_order, columns, rows, grid, near)
+                box[axis], box[axis + 3] = in_order[axis, mine] + reach, in_order[axis + 3, mine] - reach
+            found = gather(box, cell, start, members, in_order, columns, rows, grid, mine, asking, hits, near)
             if pairs + found > first.shape[0]:
                 return -1
             a, b = edges[e, 0], edges[e, 1]
             for n in range(found):
-                f = near[n]
+                f = chosen[near[n]]
                 c, d = edges[f, 0], edges[f, 1]
-                if a in (c, d) or b in (c, d) or (sharp[f] and f < e):
+                if a in (c, d) or b in (c, d) or not (sharp[e] or sharp[f]):
                     continue
                 if not _may_meet(x, v, horizon, reach, edge_length, a, b, c, d):
                     continue
                 first[pairs], second[pairs], side[pairs], over[pairs] = e, f, np.int8(0), np.int8(0)
                 for m in range(4):
                     load[pairs, m] = np.float32(0.0)
-                for k in range(starts[e], stops[e]):
-                    if old_second[k] == f:
-                        side[pairs], over[pairs] = old_side[k], old_over[k]
-                        for m in range(4):
-                            load[pairs, m] = old_load[k, m]
+                _recall(pairs, f, starts[e], stops[e], old_second, old_side, old_over, old_load, side, over, load)
+                _recall(pairs, e, starts[f], stops[f], old_second, old_side, old_over, old_load, side, over, load)
                 pairs += 1
+        elif not whole:
+            if pairs + stops[e] - starts[e] > first.shape[0]:
+                return -1
+            for k in range(starts[e], stops[e]):
+                if not again[old_second[k]]:
+                    first[pairs], second[pairs], side[pairs], over[pairs] = e, old_second[k], old_side[k], old_over[k]
+                    for m in range(4):
+                        load[pairs, m] = old_load[k, m]
+                    moved[k] = pairs
+                    pairs += 1
         new_stops[e] = pairs
     starts[:], stops[:] = new_starts, new_stops
     return pairs

@@ -8,11 +8,12 @@ from polyfold_xpbd.kernels.vectors import compiled, shift
 
 
 @compiled
-def bend(x, v, ahead, hinges, weights, rest, lead, dt):
+def bend(x, v, mobility, ahead, hinges, weights, rest, lead, dt):
     """Change velocities by isometric bending over one step of ``dt`` [s].
 
     Args:
         x, v: positions [m] and velocities [m/s], shape (N, 3); ``v`` is changed.
+        mobility: inverse masses, as shares of the mean's; 0 for held particles, shape (N,).
         hinges, weights: particles and curvature stencil [1/s] of every hinge, shape (H, 4).
         rest: what the stencil gives where the hinge is free of moment [m/s], shape (H, 3).
         dt: the step [s].
@@ -26,10 +27,10 @@ def bend(x, v, ahead, hinges, weights, rest, lead, dt):
         kx = (wa * ahead[a, 0] + wb * ahead[b, 0] + wc * ahead[c, 0] + wd * ahead[d, 0] - rest[h, 0]) * dt
         ky = (wa * ahead[a, 1] + wb * ahead[b, 1] + wc * ahead[c, 1] + wd * ahead[d, 1] - rest[h, 1]) * dt
         kz = (wa * ahead[a, 2] + wb * ahead[b, 2] + wc * ahead[c, 2] + wd * ahead[d, 2] - rest[h, 2]) * dt
-        shift(v, a, -wa, kx, ky, kz)
-        shift(v, b, -wb, kx, ky, kz)
-        shift(v, c, -wc, kx, ky, kz)
-        shift(v, d, -wd, kx, ky, kz)
+        shift(v, a, -wa * mobility[a], kx, ky, kz)
+        shift(v, b, -wb * mobility[b], kx, ky, kz)
+        shift(v, c, -wc * mobility[c], kx, ky, kz)
+        shift(v, d, -wd * mobility[d], kx, ky, kz)
 
 
 @compiled
@@ -86,7 +87,7 @@ def stretch(x, mobility, edges, rest_lengths):
 
     Args:
         x: positions [m], shape (N, 3), changed.
-        mobility: 0 for held particles and 1 for free ones, shape (N,).
+        mobility: inverse masses, as shares of the mean's; 0 for held particles, shape (N,).
         edges: pairs of particles, shape (E, 2).
         rest_lengths: [m], shape (E,).
     """
@@ -107,7 +108,7 @@ def hold_back(x, mobility, particles, anchors, lengths):
 
     Args:
         x: positions [m], shape (N, 3), changed.
-        mobility: 0 for held particles and 1 for free ones, shape (N,).
+        mobility: inverse masses, as shares of the mean's; 0 for held particles, shape (N,).
         particles, anchors: the two ends of every tether, shape (K,).
         lengths: the most that they may be apart [m], shape (K,).
     """

@@ -41,14 +41,14 @@ def _share_corner(corners, s, t):
 
 
 @compiled
-def _side_of_neighbour(p, pairs, corners, panel, first, second, side, over):
+def _side_of_neighbour(p, end, corners, panel, first, second, side, over):
     """Side on which the vertex of pair p is of a triangle next to the pair's, in the same sheet; 0 if of none."""
     i, t = first[p], second[p]
     begin = p
     while begin > 0 and first[begin - 1] == i:
         begin -= 1
     q = begin
-    while q < pairs and first[q] == i:
+    while q < end and first[q] == i:
         if over[q] != 0 and q != p and panel[second[q]] == panel[t] and _share_corner(corners, second[q], t):
             return side[q]
         q += 1
@@ -56,10 +56,10 @@ def _side_of_neighbour(p, pairs, corners, panel, first, second, side, over):
 
 
 @compiled
-def _rival(found, i, t, nx, ny, nz, corners, panel, second, bodies, normals, source):
-    """Which of the ``found`` contacts is of vertex i with a triangle next to t, in its plane; ``found`` if none."""
+def _rival(found, since, i, t, nx, ny, nz, corners, panel, second, bodies, normals, source):
+    """Which contact from ``since`` on is of vertex i with a triangle next to t, in its plane; ``found`` if none."""
     k = found - 1
-    while k >= 0 and bodies[k, 0] == i:
+    while k >= since and bodies[k, 0] == i:
         other = second[source[k]]
         along = nx * normals[k, 0] + ny * normals[k, 1] + nz * normals[k, 2]
         if along > np.float32(0.9) and panel[other] == panel[t] and _share_corner(corners, other, t):
@@ -69,17 +69,34 @@ def _rival(found, i, t, nx, ny, nz, corners, panel, second, bodies, normals, sou
 
 
 @compiled
-def find_vertex_contacts(
-    x, v, window, mobility, corners, panel, thickness, pairs, first, second, side, over, load, bodies, weights,
-    responses, normals, inverse, source,
-):  # fmt: skip
-    """Contacts of listed vertices and triangles for the next ``window`` [s]; how many.
+def keep_contacts(found, moved, bodies, weights, responses, normals, inverse, source):
+    """Drop contacts of pairs that were listed anew, where ``moved`` is -1, and renumber the others; how many stay."""
+    kept = 0
+    for k in range(found):
+        p = moved[source[k]]
+        if p >= 0:
+            source[kept], inverse[kept] = p, inverse[k]
+            for m in range(4):
+                bodies[kept, m], weights[kept, m], responses[kept, m] = bodies[k, m], weights[k, m], responses[k, m]
+            for axis in range(3):
+                normals[kept, axis] = normals[k, axis]
+            kept += 1
+    return kept
 
+
+@compiled
+def find_vertex_contacts(
+    x, v, window, mobility, corners, panel, thickness, begin, end, found, first, second, side, over, load, bodies,
+    weights, responses, normals, inverse, source,
+):  # fmt: skip
+    """Contacts of vertices and triangles, pairs ``begin`` to ``end``, added to the ``found`` ones; how many in all.
+
+    They are for the next ``window`` [s], and the pairs are all that there are of these vertices.
     ``bodies`` (particles), ``weights`` and ``responses`` (how far each moves per push), shape (C, 4), ``normals``,
     shape (C, 3), ``inverse`` (push per metre of gap) and ``source`` (number of the pair), shape (C,), get them.
     """
-    found, one, zero = 0, np.float32(1.0), np.float32(0.0)
-    for p in range(pairs):
+    since, one, zero = found, np.float32(1.0), np.float32(0.0)
+    for p in range(begin, end):
         i, t = first[p], second[p]
         a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
         ux, uy, uz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
@@ -96,7 +113,7 @@ def find_vertex_contacts(
             continue
         height = (nx * rx + ny * ry + nz * rz) / np.sqrt(square)
         if over[p] != 1:
-            side[p] = _side_of_neighbour(p, pairs, corners, panel, first, second, side, over)
+            side[p] = _side_of_neighbour(p, end, corners, panel, first, second, side, over)
         if side[p] == 0 or height * side[p] < -np.float32(FORGOTTEN) * thickness:
             side[p] = np.int8(1) if height >= zero else np.int8(-1)
         over[p] = np.int8(1)
@@ -112,7 +129,7 @@ def find_vertex_contacts(
             load[p, :] = zero
             continue
         # Where sheets lie vertex on vertex, a vertex is over six triangles at once; one of them is enough.
-        slot = _rival(found, i, t, nx, ny, nz, corners, panel, second, bodies, normals, source)
+        slot = _rival(found, since, i, t, nx, ny, nz, corners, panel, second, bodies, normals, source)
         if slot < found:
             q = source[slot]
             alike = min(-weights[slot, 1], min(-weights[slot, 2], -weights[slot, 3]))
@@ -135,12 +152,12 @@ def find_vertex_contacts(
 
 @compiled
 def find_edge_contacts(
-    x, v, window, mobility, edges, thickness, first_pair, pairs, found, first, second, side, over, load,
+    x, v, window, mobility, edges, thickness, begin, end, found, first, second, side, over, load,
     bodies, weights, responses, normals, inverse, source,
 ):  # fmt: skip
-    """Contacts of listed edges, numbers ``first_pair`` to ``pairs``, added to the ``found`` ones; how many in all."""
+    """Contacts of edges, pairs ``begin`` to ``end``, added to the ``found`` ones; how many in all."""
     one, zero = np.float32(1.0), np.float32(0.0)
-    for p in range(first_pair, pairs):
+    for p in range(begin, end):
         a, b = edges[first[p], 0], edges[first[p], 1]
         c, d = edges[second[p], 0], edges[second[p], 1]
         ux, uy, uz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
