@@ -196,6 +196,19 @@ class Solver:
         self._mobility[:] = self._model.lightness
         return alive and self.settle(LONGEST_SETTLING, on_frame, interval)
 
+    def carry(self, particles: NDArray[np.int64], paths: NDArray[np.float64]) -> bool:
+        """Move pinned particles, indices of shape (K,), and let time pass. False if the cloth diverged.
+
+        Args:
+            particles: what :meth:`pin` holds.
+            paths: where each is after every substep [m], shape (substeps, K, 3).
+        """
+        held, arms = particles.astype(np.uint32), np.arange(len(particles), dtype=np.uint32)
+        offsets, directions = np.zeros((len(held), 3), np.float32), np.zeros((len(held), 2), np.float32)
+        unturned = np.tile(np.array([1.0, 0.0], np.float32), (len(paths), 1))
+        motion = (held, offsets, arms, directions, paths.astype(np.float32), unturned)
+        return self._run(motion + self._tethers.tie(held, arms, offsets), len(paths), MOVING, 0.0, None, 0.0)
+
     def settle(self, longest: float, on_frame: Callable[[], None] | None = None, interval: float = 0.0) -> bool:
         """Let the cloth come to rest for at most ``longest`` seconds. False if it diverged."""
         alive = self._run(_EMPTY, round(longest / self.dt), SETTLING, REST_SPEED, on_frame, interval)

@@ -197,7 +197,7 @@ def test_chosen_picks_are_where_the_network_promises_most(chosen_folder, network
         assert apart.min() > 0.045 * len(points), "and not the same again"
         region = fold_region(data.line(state), data.scene(state))
         partners = data["second"][trials[data["trial_state"][trials] == state]]
-        # Firsts are kept rounded: a partner that slides to the border between two contour pixels may be either. And they
+        # Firsts are kept rounded: a partner that slides to the border between two contour pixels may be either. They
         # need not be among the points that the map was asked at.
         shares = [near * PARTNER_SLIDE for near in (0.99, 1.0, 1.01)]
         wanted = np.array([[coupled_pick(region, first, PickConfig(), share) for share in shares] for first in firsts])

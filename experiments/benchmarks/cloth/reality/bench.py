@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from polyfold_xpbd.solver import MOVING, Solver
+from polyfold_xpbd.solver import Solver
 
 from polyfold import plugins
 from polyfold.config import ComponentSpec
@@ -108,12 +108,7 @@ class Cloth:
         Raises:
             SimulationError: if the sample diverges.
         """
-        held, arms = self._held.astype(np.uint32), np.arange(len(self._held), dtype=np.uint32)
-        offsets = np.zeros((len(held), 3), np.float32)
-        unturned = np.tile(np.array([1.0, 0.0], np.float32), (len(paths), 1))
-        motion = (np.zeros((len(held), 2), np.float32), paths.astype(np.float32), unturned)
-        tethers = self._solver._tethers.tie(held, arms, offsets)
-        if not self._solver._run((held, offsets, arms, *motion, *tethers), len(paths), MOVING, 0.0, None, 0.0):
+        if not self._solver.carry(self._held, paths):
             raise SimulationError("the sample diverged while it was carried; carry it more slowly, and report it")
 
     def _place(self, positions: Floats) -> None:
