@@ -43,14 +43,14 @@ class FaultySimulator:
     def __init__(self, config: Config) -> None:
         self._config = config
         self._inner: Any = create("simulators", config.inner)
-        self._holds: NDArray[np.bool_] | None = None
+        self._grasped: tuple[int, ...] | None = None
 
     def reset(self, garment: Garment, seed: int) -> Observation:
         """Lay the garment flat; the faults follow from the seed and from all that is done.
 
         Agents that act alike meet the same faults, and different tasks on one garment meet different ones.
         """
-        self._history, self._holds = zlib.crc32(str(seed).encode()), None
+        self._history, self._grasped = zlib.crc32(str(seed).encode()), None
         return self._inner.reset(garment, seed)
 
     def observe(self) -> Observation:
@@ -66,10 +66,11 @@ class FaultySimulator:
         holds = self._rng.random(action.arms) >= self._config.miss
         slips, displaced = self._rng.random(2) < (self._config.slip, self._config.displace)
         share = self._rng.uniform(0.3, 0.8) if slips else 1.0
+        self._grasped = (0,) * action.arms
         if holds.any():
             picks, places = action.picks[holds], action.places[holds]
             self._inner.execute(Action(picks, picks + share * (places - picks)))
-        self._holds = holds
+            self._grasped = _among(holds, self._inner.state().grasped)
         if displaced:
             self._displace()
         return self.observe()
@@ -91,17 +92,22 @@ class FaultySimulator:
 
     def state(self) -> SimState:
         """Privileged state."""
-        state = self._inner.state()
-        if self._holds is None or (state.grasped is None and self._holds.any()):
-            return state
-        held = iter(state.grasped or ())
-        return replace(state, grasped=tuple(next(held, 0) if holds else 0 for holds in self._holds))
+        return replace(self._inner.state(), grasped=self._grasped)
 
     def restore(self, state: SimState) -> None:
         """Return to a state of this garment."""
-        self._holds = None
+        self._grasped = state.grasped
         self._inner.restore(state)
 
     def close(self) -> None:
         """Release what is held."""
         self._inner.close()
+
+
+def _among(holds: NDArray[np.bool_], grasped: tuple[int, ...] | None) -> tuple[int, ...] | None:
+    """What all arms hold, where the simulator was told of those that hold alone, bool, shape (arms,)."""
+    if grasped is None:
+        return None
+    plies = np.zeros(len(holds), int)
+    plies[holds] = grasped
+    return tuple(plies.tolist())

@@ -211,13 +211,13 @@ class Solver:
 
     def settle(self, longest: float, on_frame: Callable[[], None] | None = None, interval: float = 0.0) -> bool:
         """Let the cloth come to rest for at most ``longest`` seconds. False if it diverged."""
-        alive = self._run(_EMPTY, round(longest / self.dt), SETTLING, REST_SPEED, on_frame, interval)
+        alive = self._run(NOTHING_HELD, round(longest / self.dt), SETTLING, REST_SPEED, on_frame, interval)
         self.v[:] = 0.0
         return alive
 
     def wait(self, seconds: float, on_frame: Callable[[], None] | None = None, interval: float = 0.0) -> bool:
         """Let time pass. False if it diverged."""
-        alive = self._run(_EMPTY, round(seconds / self.dt), SETTLING, 0.0, on_frame, interval)
+        alive = self._run(NOTHING_HELD, round(seconds / self.dt), SETTLING, 0.0, on_frame, interval)
         self.v[:] = 0.0
         return alive
 
@@ -264,7 +264,7 @@ def _pair_memory(room: int) -> tuple[NDArray[Any], ...]:
     return np.zeros(room, np.int32), np.zeros(room, np.int8), np.zeros(room, np.int8), np.zeros((room, 4), np.float32)
 
 
-_EMPTY = (
+NOTHING_HELD = (
     np.zeros(0, np.uint32),
     np.zeros((0, 3), np.float32),
     np.zeros(0, np.uint32),
@@ -275,3 +275,4 @@ _EMPTY = (
     np.zeros(0, np.uint32),
     np.zeros(0, np.float32),
 )
+"""What the compiled loop is told of grippers where there are none: :meth:`Solver.fold` has the order."""

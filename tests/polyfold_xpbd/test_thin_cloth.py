@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
-from polyfold_xpbd.solver import _EMPTY, SETTLING
+from polyfold_xpbd.solver import NOTHING_HELD, SETTLING
 
 from experiments.benchmarks.cloth.measures import crossing_edges, layer_order, strain
 from experiments.benchmarks.cloth.reality.bench import Cloth
@@ -239,7 +239,7 @@ def test_what_comes_near_what_strayed_is_listed_though_it_did_not_stray_itself(e
     turn = rng.uniform(0, 2 * np.pi, 12)
     solver.x[strayed, :2] += 0.5 * edge_length * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     positions = solver.positions()
-    solver._advance(_EMPTY, 2, 3, SETTLING, 0.0)
+    solver._advance(NOTHING_HELD, 2, 3, SETTLING, 0.0)
     memory = solver.memory()
     vertex_pairs = memory["pair_kinds"][0]
     listed = set(zip(memory["pair_first"][:vertex_pairs], memory["pair_second"][:vertex_pairs], strict=True))

@@ -19,7 +19,10 @@ RUNNING, SETTLED, DIVERGED = 0, 1, 2
 LOOK_EVERY = 8
 """Substeps between looks at which listed pairs touch, where and which way."""
 STRETCHED = 1.5
-"""No edge is ever longer than the longest at rest by more than this factor."""
+"""Edges are taken to be no longer than the longest at rest by this factor.
+
+What is stretched farther, and folds stretch a few edges by two thirds, may be listed as late as with the whole list.
+"""
 REST_OVER = 40
 """Substeps over which the cloth is watched for rest."""
 

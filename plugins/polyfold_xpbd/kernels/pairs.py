@@ -70,6 +70,33 @@ def _frames(x, v, corners, chosen, frames):
 
 
 @compiled
+def _enter(p, one, other, first, second, side, over, load):
+    """Make pair p a pair of these two that remembers nothing."""
+    first[p], second[p], side[p], over[p] = one, other, np.int8(0), np.int8(0)
+    for m in range(4):
+        load[p, m] = np.float32(0.0)
+
+
+@compiled
+def _keep(p, one, k, old_second, old_side, old_over, old_load, first, second, side, over, load, moved):
+    """Make pair p the old pair k, whose first member is ``one``."""
+    first[p], second[p], side[p], over[p] = one, old_second[k], old_side[k], old_over[k]
+    for m in range(4):
+        load[p, m] = old_load[k, m]
+    moved[k] = p
+
+
+@compiled
+def _recall(p, other, begin, end, old_second, old_side, old_over, old_load, side, over, load):
+    """Let pair p take over what the pair with ``other`` among the old ones from ``begin`` to ``end`` remembers."""
+    for k in range(begin, end):
+        if old_second[k] == other:
+            side[p], over[p] = old_side[k], old_over[k]
+            for m in range(4):
+                load[p, m] = old_load[k, m]
+
+
+@compiled
 def list_vertex_pairs(
     x, v, normals, horizon, reach, edge_length, corners, thickness, order, close, again,
     starts, stops, moved, old_second, old_side, old_over, old_load, first, second, side, over, load,
@@ -102,10 +129,7 @@ def list_vertex_pairs(
             if pairs + stops[i] - starts[i] > first.shape[0]:
                 return -1
             for k in range(starts[i], stops[i]):
-                first[pairs], second[pairs], side[pairs], over[pairs] = i, old_second[k], old_side[k], old_over[k]
-                for m in range(4):
-                    load[pairs, m] = old_load[k, m]
-                moved[k] = pairs
+                _keep(pairs, i, k, old_second, old_side, old_over, old_load, first, second, side, over, load, moved)
                 pairs += 1
             new_stops[i] = pairs
             continue
@@ -150,17 +174,9 @@ def list_vertex_pairs(
         for n in range(kept):
             if abs(away[n]) > (cover_above if upper[n] else cover_below) + np.float32(BEHIND) * thickness:
                 continue
-            first[pairs], second[pairs], side[pairs], over[pairs] = i, near[n], np.int8(0), np.int8(0)
-            for m in range(4):
-                load[pairs, m] = zero
+            _enter(pairs, i, near[n], first, second, side, over, load)
+            _recall(pairs, near[n], starts[i], stops[i], old_second, old_side, old_over, old_load, side, over, load)
             pairs += 1
-        for k in range(starts[i], stops[i]):
-            if old_over[k] != 0:
-                for q in range(new_starts[i], pairs):
-                    if second[q] == old_second[k]:
-                        side[q], over[q] = old_side[k], old_over[k]
-                        for m in range(4):
-                            load[q, m] = old_load[k, m]
         new_stops[i] = pairs
     starts[:], stops[:] = new_starts, new_stops
     return pairs
@@ -189,16 +205,6 @@ def _may_meet(x, v, horizon, reach, edge_length, a, b, c, d):
         return False
     gx, gy, gz = rx + t * wx - s * ux, ry + t * wy - s * uy, rz + t * wz - s * uz
     return gx * gx + gy * gy + gz * gz < (reach + travel) * (reach + travel)
-
-
-@compiled
-def _recall(p, other, begin, end, old_second, old_side, old_over, old_load, side, over, load):
-    """Let pair p take over what the pair with ``other`` among the old ones from ``begin`` to ``end`` remembers."""
-    for k in range(begin, end):
-        if old_second[k] == other:
-            side[p], over[p] = old_side[k], old_over[k]
-            for m in range(4):
-                load[p, m] = old_load[k, m]
 
 
 @compiled
@@ -244,9 +250,7 @@ def list_edge_pairs(
                     continue
                 if not _may_meet(x, v, horizon, reach, edge_length, a, b, c, d):
                     continue
-                first[pairs], second[pairs], side[pairs], over[pairs] = e, f, np.int8(0), np.int8(0)
-                for m in range(4):
-                    load[pairs, m] = np.float32(0.0)
+                _enter(pairs, e, f, first, second, side, over, load)
                 _recall(pairs, f, starts[e], stops[e], old_second, old_side, old_over, old_load, side, over, load)
                 _recall(pairs, e, starts[f], stops[f], old_second, old_side, old_over, old_load, side, over, load)
                 pairs += 1
@@ -255,10 +259,7 @@ def list_edge_pairs(
                 return -1
             for k in range(starts[e], stops[e]):
                 if not again[old_second[k]]:
-                    first[pairs], second[pairs], side[pairs], over[pairs] = e, old_second[k], old_side[k], old_over[k]
-                    for m in range(4):
-                        load[pairs, m] = old_load[k, m]
-                    moved[k] = pairs
+                    _keep(pairs, e, k, old_second, old_side, old_over, old_load, first, second, side, over, load, moved)
                     pairs += 1
         new_stops[e] = pairs
     starts[:], stops[:] = new_starts, new_stops
