@@ -44,6 +44,10 @@ class XpbdSimulator:
             ge=0,
             description="seed of the order in which particles and contacts are visited; 0 is the mesh's own",
         )
+        guaranteed: bool = Field(
+            default=False,
+            description="no ply ever passes through another, if none did at reset; 3 to 6 times slower",
+        )
 
     moved: ClassVar[dict[str, str]] = {
         "thickness": "fabric.thickness",
@@ -77,7 +81,7 @@ class XpbdSimulator:
         self._camera = Camera.framing(2 * radius / self.config.fill)
         self._order, mesh = _renumbered(garment.mesh, self.config.order)
         self._rank = np.argsort(self._order)
-        self._solver = Solver(mesh, ((flat - centre) @ turn)[self._order], garment.fabric)
+        self._solver = Solver(mesh, ((flat - centre) @ turn)[self._order], garment.fabric, self.config.guaranteed)
         self._solver.settle(0.3)
         self._keypoints = name_by_pose(garment.cyclic, garment.keypoints, self._solver.positions()[self._rank])
         self._two_layers = garment.mesh.layers == 2

@@ -13,6 +13,7 @@ from polyfold.garments import Fabric, Mesh
 from polyfold.geometry import Camera
 from polyfold.types import Action
 from polyfold_xpbd.grasp import Grasp, plan_motion, take_hold
+from polyfold_xpbd.kernels.close import watch_memory
 from polyfold_xpbd.kernels.loop import DIVERGED, SETTLED, advance
 from polyfold_xpbd.kernels.vectors import vertex_normals
 from polyfold_xpbd.model import ClothModel, build_model
@@ -70,7 +71,7 @@ def _constraints(mesh: Mesh, fabric: Fabric) -> tuple[ClothModel, TetherMap]:
 class Solver:
     """One cloth: buffers of the compiled loop, and folding, settling and waiting with them."""
 
-    def __init__(self, mesh: Mesh, flat: NDArray[np.float64], fabric: Fabric) -> None:
+    def __init__(self, mesh: Mesh, flat: NDArray[np.float64], fabric: Fabric, guaranteed: bool = False) -> None:
         count = len(flat)
         self._model, self._tethers = _constraints(mesh, fabric)
         self._thickness = fabric.thickness
@@ -111,6 +112,7 @@ class Solver:
         self._set = np.zeros(hinges, np.float32)
         self._rest = np.zeros((hinges, 3), np.float32)
         self._clock = np.zeros(5, np.int64)
+        self._watch = watch_memory(count) if guaranteed else None
 
     @property
     def triangles(self) -> NDArray[np.uint32]:
@@ -232,6 +234,8 @@ class Solver:
     ) -> bool:
         # A fresh list and no loads make a stage depend on the saved state alone, so that restore() repeats exactly.
         self._clock[:2] = 0, -1
+        if self._watch is not None:
+            self._watch.counts[:4] = 0
         self._pairs[3][: self._clock[3]], self._table_load[:], self._sharp[:] = 0.0, 0.0, False
         chunk = substeps if on_frame is None else max(1, round(interval / self.dt))
         done = 0
@@ -254,7 +258,7 @@ class Solver:
             model.hinges, model.hinge_weights, model.elastic, self._set, self._rest, model.normal_corners, model.panel,
             model.normal_use, self._clock, self._listed, self._foreseen, self._rested, self._sharp, self._stray,
             self._order, *self._again, self._moved, *self._vertex_range, *self._edge_range, self._first, *self._pairs,
-            *self._old_pairs, *self._contacts, self._table_load, *held,
+            *self._old_pairs, *self._contacts, self._table_load, *held, self._watch,
             first, last, self._settings, np.float32(damping), np.float32(rest_speed),
         )  # fmt: skip
 

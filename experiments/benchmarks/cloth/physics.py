@@ -49,10 +49,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--garments", type=int, default=10, help="garments per scripted sequence (default 10)")
     parser.add_argument("--scaling", action="store_true", help="also measure the time from 1,000 to 8,000 particles")
     parser.add_argument("--seed", type=int, default=2000, help="first garment seed (default 2000)")
+    parser.add_argument("--guaranteed", action="store_true", help="random folds in which no ply may pass another")
     options = parser.parse_args(arguments)
     rows: list[Row] = []
     if options.folds:
-        rows += _random_rows(options.folds, options.seed)
+        rows += _random_rows(options.folds, options.seed, options.guaranteed)
     if options.timed:
         rows += _timing_rows(options.timed, options.seed)
     if options.garments:
@@ -71,9 +72,9 @@ def _progress(items: Iterable[Any], total: int, label: str) -> Iterator[Any]:
     return iter(tqdm(items, total=total, desc=label, file=sys.stderr, mininterval=2.0))
 
 
-def _random_rows(folds: int, seed: int) -> list[Row]:
+def _random_rows(folds: int, seed: int, guaranteed: bool) -> list[Row]:
     result = RandomFolds()
-    for _ in _progress(_random_folds(result, folds, seed), folds, "random folds"):
+    for _ in _progress(_random_folds(result, folds, seed, guaranteed), folds, "random folds"):
         pass
     strains = np.abs(np.concatenate(result.strains))
     orders = np.array([order for order in result.orders if np.isfinite(order)])
@@ -91,9 +92,9 @@ def _random_rows(folds: int, seed: int) -> list[Row]:
     ]
 
 
-def _random_folds(result: RandomFolds, folds: int, seed: int) -> Iterator[None]:
+def _random_folds(result: RandomFolds, folds: int, seed: int, guaranteed: bool) -> Iterator[None]:
     """Fold garments of all kinds one to three times each, filling ``result``."""
-    simulator = plugins.create("simulators", "xpbd")
+    simulator = plugins.create("simulators", "xpbd", {"guaranteed": guaranteed})
     done = 0
     while done < folds:
         garment = plugins.generate_garment(KINDS[seed % 4], seed, DATA_EDGE)

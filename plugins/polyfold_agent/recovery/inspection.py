@@ -26,6 +26,9 @@ UNEVEN = ((1.0, 0.2), (0.35, 0.7), (0.0, 1.0))
 LANDED = 0.5
 """Share of the flap's height at a place from which the flap did come down there."""
 
+PULLED = 1.5
+"""Cloth that was left behind is at most this much farther from its place than it was, for cloth does not stretch."""
+
 
 @dataclass(frozen=True, eq=False)
 class Finding:
@@ -78,8 +81,11 @@ def _misplaced(
         shares = np.array([expected.landed(seen, place) for place in attempt.action.places])
         enough = next(share for difference, share in UNEVEN if np.ptp(shares) >= difference)
         overhangs = left > enough * remaining and beyond > enough * astray * attempt.depth
-        if overhangs and shares.min() < LANDED:
-            return Finding("astray", bring_over(attempt, mask, int(np.argmin(shares)), tip))
+        arm = int(np.argmin(shares))
+        pick, place = attempt.action.picks[arm], attempt.action.places[arm]
+        near_enough = np.hypot(*(place - tip)) <= PULLED * np.hypot(*(place - pick))
+        if overhangs and shares[arm] < LANDED and near_enough:
+            return Finding("astray", bring_over(attempt, mask, arm, tip))
     return Finding("left") if left > remaining else None
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
+from polyfold_xpbd.kernels.apart import keep_apart
 from polyfold_xpbd.kernels.contact import resolve, table, warm_start
 from polyfold_xpbd.kernels.listing import CROWDED, HORIZON, IMPOSSIBLE, PARTIAL, WHOLE, list_anew
 from polyfold_xpbd.kernels.motion import carry, damp, is_finite, predict, rests, velocities
@@ -43,7 +44,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         vertices_again, edges_again, close, moved, vertex_starts, vertex_stops, edge_starts,
         edge_stops, first, second, side, over, load, old_second, old_side, old_over, old_load, bodies, weights,
         responses, contact_normals, inverse, source, table_load, grasped, offsets, arm, directions, path, turns, tied,
-        anchors, lengths, begin, end, settings, damping, rest_speed,
+        anchors, lengths, watch, begin, end, settings, damping, rest_speed,
     ):  # fmt: skip
         """Run substeps ``begin`` to ``end`` in place; stop once the cloth is slower than ``rest_speed`` [m/s], if > 0.
 
@@ -52,6 +53,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                 and the contacts in use, int64, shape (5,).
             settings: time step [s], thickness, slack and cell [m], friction of table and cloth, recovery [m] and top
                 speed [m/s], share of a crease that stays, lead of bending [s], mean normal of a bend, shape (11,).
+            watch: what the guarantee watches; without it, None, nothing is guaranteed.
 
         Returns:
             (status, substeps done).
@@ -117,6 +119,11 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                 cloth_friction, recovery,
             )  # fmt: skip
             table(x, previous, mobility, table_load, floor, table_friction)
+            parted = True
+            if watch is not None:
+                parted = keep_apart(x, start, dt, thickness, cell, corners, edges, mobility, watch)
+            if not parted:
+                return DIVERGED, k
             velocities(x, previous, start, v, inverse_dt)
             if rest_speed > 0 and clock[0] % REST_OVER == 0:
                 slow = rests(x, rested, np.float32(REST_OVER) * dt * rest_speed)

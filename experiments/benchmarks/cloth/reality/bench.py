@@ -115,9 +115,9 @@ class Cloth:
         self._solver.set_state(np.asarray(positions, float), np.zeros((len(positions), 3)), {})
 
 
-def simulator() -> Any:
-    """The simulator that agents fold in; the cloth's fabric comes with the garment."""
-    return plugins.create("simulators", "xpbd")
+def simulator(**params: Any) -> Any:
+    """The simulator that agents fold in, with these parameters; the cloth's fabric comes with the garment."""
+    return plugins.create("simulators", "xpbd", params)
 
 
 def garment(kind: str, seed: int, edge_length: float, fabric: Fabric) -> Garment:
