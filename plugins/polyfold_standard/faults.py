@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.garments import Garment
-from polyfold.plugins import create
+from polyfold.plugins import component_class, create
 from polyfold.plugins.interfaces import RecordsMotion
 from polyfold.types import Action, Observation, SimState
 
@@ -25,6 +25,7 @@ class FaultySimulator:
         model_config = ConfigDict(frozen=True, extra="forbid")
 
         inner: str = Field(default="xpbd", description="the simulator that faults are injected into")
+        inner_params: dict[str, Any] = Field(default_factory=dict, description="its parameters")
         miss: float = Field(default=0.0, ge=0, le=1, description="probability that a grasp takes no cloth, per arm")
         slip: float = Field(
             default=0.0, ge=0, le=1, description="probability that the cloth is dropped on the way, per fold"
@@ -38,11 +39,14 @@ class FaultySimulator:
     @classmethod
     def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:
         """The simulator that references are made in: they must not have the faults."""
-        return config.inner, {}
+        inner: Any = component_class("simulators", config.inner)
+        if not hasattr(inner, "reference_config"):
+            return config.inner, dict(config.inner_params)
+        return inner.reference_config(inner.Config(**config.inner_params))
 
     def __init__(self, config: Config) -> None:
         self._config = config
-        self._inner: Any = create("simulators", config.inner)
+        self._inner: Any = create("simulators", config.inner, config.inner_params)
         self._grasped: tuple[int, ...] | None = None
 
     def reset(self, garment: Garment, seed: int) -> Observation:

@@ -25,7 +25,8 @@ class XpbdSimulator:
     The garment is laid with its bounding circle in the middle of the image, turned by an angle drawn from the seed.
     Grippers hold all layers within 15 mm of a pick, or farther on a coarser mesh, and lay them down at the place
     along an arc. A pick off the cloth grasps nothing: its arm moves empty, and if no arm holds cloth the fold changes
-    nothing. The state says how many plies each arm held.
+    nothing. The state says how many plies each arm held. With ``guaranteed``, plies that did not at reset never pass
+    through each other, however the grippers pull; one that would have to drag cloth through cloth lags behind.
     """
 
     class Config(BaseModel):
@@ -46,7 +47,7 @@ class XpbdSimulator:
         )
         guaranteed: bool = Field(
             default=False,
-            description="no ply ever passes through another, if none did at reset; 3 to 6 times slower",
+            description="no ply ever passes through another, if none did at reset; up to 6 times slower",
         )
 
     moved: ClassVar[dict[str, str]] = {
@@ -82,7 +83,8 @@ class XpbdSimulator:
         self._order, mesh = _renumbered(garment.mesh, self.config.order)
         self._rank = np.argsort(self._order)
         self._solver = Solver(mesh, ((flat - centre) @ turn)[self._order], garment.fabric, self.config.guaranteed)
-        self._solver.settle(0.3)
+        if not self._solver.settle(0.3):
+            raise SimulationError(f"the garment {garment.name!r} can't be laid flat; check its mesh")
         self._keypoints = name_by_pose(garment.cyclic, garment.keypoints, self._solver.positions()[self._rank])
         self._two_layers = garment.mesh.layers == 2
         self._outside_up = (garment.mesh.panel == 1) | (not self._two_layers)
@@ -110,7 +112,7 @@ class XpbdSimulator:
         self._actions.append(np.concatenate([action.picks, action.places]).round(3).tolist())
         grasp = solver.grip(action, self._camera)
         self._grasped = (0,) * action.arms if grasp is None else tuple(grasp.plies.tolist())
-        if grasp is not None and not solver.fold(grasp, *self._frames()):
+        if grasp is not None and not self._undone_if_broken_off(before, lambda: solver.fold(grasp, *self._frames())):
             reproduction = (
                 f"garment {garment.name!r} (seed {garment.seed}), reset seed {self._seed}, {self.config!r}, "
                 f"picks and places so far {self._actions}"
@@ -136,7 +138,9 @@ class XpbdSimulator:
     def state(self) -> SimState:
         """Privileged state: particles, keypoints and the contact memory that :meth:`restore` needs."""
         solver, _ = self._ready()
-        extra: dict[str, Any] = {**solver.memory(), "actions": tuple(self._actions)}
+        extra: dict[str, Any] = {
+            **solver.memory(), "actions": tuple(self._actions), "guaranteed": self.config.guaranteed,
+        }  # fmt: skip
         positions, velocities = solver.positions()[self._rank], solver.velocities()[self._rank]
         return SimState(positions, velocities, self._keypoints, self._camera, extra, self._grasped)
 
@@ -148,6 +152,11 @@ class XpbdSimulator:
                 f"the state has {len(state.positions)} particles, the garment {len(garment.mesh.vertices)}; "
                 "restore only states of the garment given to reset()"
             )
+        if self.config.guaranteed and not state.extra.get("guaranteed", False):
+            raise SimulationError(
+                "the state was made without the guarantee, and plies may pass through each other in it; restore "
+                "a state of a guaranteed simulator, or reset() this one and fold again"
+            )
         solver.set_state(state.positions[self._order], state.velocities[self._order], state.extra)
         self._camera, self._keypoints = state.camera, state.keypoints
         self._actions, self._grasped = list(state.extra.get("actions", ())), state.grasped
@@ -155,6 +164,14 @@ class XpbdSimulator:
     def close(self) -> None:
         """Release the solver; call :meth:`reset` to go on."""
         self._solver = self._garment = None
+
+    def _undone_if_broken_off(self, before: SimState, motion: Callable[[], bool]) -> bool:
+        """Whether the cloth didn't diverge; a recorder's error or Ctrl-C leaves the state before."""
+        try:
+            return motion()
+        except BaseException:
+            self.restore(before)
+            raise
 
     def _ready(self) -> tuple[Solver, Garment]:
         if self._solver is None or self._garment is None:

@@ -168,3 +168,9 @@ def test_faults_follow_from_what_is_done_and_not_from_the_garment_alone():
     off, elsewhere = [5.0, 5.0], [9.0, 9.0]
     assert shift(off) == pytest.approx(shift(off))
     assert np.abs(shift(off) - shift(elsewhere)).max() > 1e-3
+
+
+def test_the_simulator_inside_gets_its_parameters():
+    simulator = plugins.create("simulators", "faulty", {"inner_params": {"guaranteed": True}})
+    simulator.reset(plugins.generate_garment("square", 2000, 0.04), 1)
+    assert simulator.state().extra["guaranteed"]

@@ -161,6 +161,24 @@ def test_recording_changes_nothing_and_sees_the_motion(simulator, garments):
     assert min(frame.depth.min() for frame in frames) < frames[0].camera.elevation - 0.05
 
 
+def test_a_fold_that_is_broken_off_leaves_the_state_before_it(simulator, garments):
+    simulator.reset(garments["square"], 3)
+    before, frames = simulator.state().positions, []
+
+    def break_off(picture):
+        frames.append(picture)
+        if len(frames) == 5:
+            raise KeyboardInterrupt
+
+    simulator.record(break_off, frames_per_second=10)
+    with pytest.raises(KeyboardInterrupt):
+        simulator.execute(half_of_square(simulator))
+    simulator.record(None)
+    assert np.array_equal(simulator.state().positions, before)
+    simulator.wait(0.5)
+    assert simulator.state().positions[:, 2].max() < 0.002, "nothing hangs where a gripper was"
+
+
 def test_pick_off_the_cloth_changes_nothing(simulator, garments):
     simulator.reset(garments["square"], 2)
     before = simulator.state().positions

@@ -4,7 +4,7 @@ Two convex bodies that a plane parts at the start of a straight motion and at it
 the plane's normal is the same. So for every vertex and triangle, and for all pairs of edges, that could meet, a normal
 is kept that parts them. Where the end of a substep leaves none, the particles are moved back to either side, and what
 does not come apart so in a few sweeps moves as one for this substep: by its mean, or as the grippers do that hold some
-of it.
+of it, but never into the table. A gripper that would have to pull cloth through cloth lags behind its path.
 
 After Offset Geometric Contact (Chen et al. 2025, doi 10.1145/3731205), which bounds every particle's way by its
 distance to others; planes don't hold back a packet that is carried as a whole. What moves as one is an impact zone
@@ -23,10 +23,8 @@ APART, FARTHER = 0.1, 0.01
 """Bodies are kept this far apart, in thicknesses, unless they were nearer before; then they part by so much more."""
 SWEEPS = 8
 """Sweeps that move particles to either side of planes; what then still meets moves as one."""
-ROUNDING = 1e-7
-"""What the same way, added to different positions, may differ by [m]."""
 ATTEMPTS = 4
-"""How often what was moved back may leave what is listed in one substep; then nothing moves in it."""
+"""How often what was moved back may leave what is listed in one substep; then, or without room, nothing moves in it."""
 
 
 @compiled
@@ -45,8 +43,8 @@ def _gap(x, bodies, p, upper, nx, ny, nz):
 
 
 @compiled
-def _part(x, bodies, p, upper, nx, ny, nz, missing, mobility, moved, sweep):
-    """Move the particles of pair p along the normal until they are ``missing`` [m] farther apart."""
+def _part(x, bodies, p, upper, nx, ny, nz, missing, floor, mobility, moved, sweep):
+    """Move the particles of pair p along the normal until they are ``missing`` [m] farther apart, or on the table."""
     zero, half = np.float32(0.0), np.float32(0.5)
     o = bodies[p, 0]
     ox, oy, oz = x[o, 0], x[o, 1], x[o, 2]
@@ -66,7 +64,8 @@ def _part(x, bodies, p, upper, nx, ny, nz, missing, mobility, moved, sweep):
         along = nx * (x[i, 0] - ox) + ny * (x[i, 1] - oy) + nz * (x[i, 2] - oz)
         way = max(zero, rise - along) if m < upper else min(zero, fall - along)
         if way != zero:
-            x[i, 0], x[i, 1], x[i, 2] = x[i, 0] + way * nx, x[i, 1] + way * ny, x[i, 2] + way * nz
+            x[i, 0], x[i, 1] = x[i, 0] + way * nx, x[i, 1] + way * ny
+            x[i, 2] = max(x[i, 2] + way * nz, min(x[i, 2], floor))
             moved[i] = sweep
 
 
@@ -77,6 +76,17 @@ def _root(zones, i):
         zones[i] = zones[zones[i]]
         i = zones[i]
     return i
+
+
+@compiled
+def _unite(zones, a, b, c, d):
+    """Put four particles into one zone; whether they were not."""
+    root, apart = _root(zones, a), False
+    for i in (b, c, d):
+        other = _root(zones, i)
+        if other != root:
+            zones[other], apart = root, True
+    return apart
 
 
 @compiled
@@ -92,7 +102,7 @@ def _may_meet(watch, p, upper, after, apart):
 
 
 @compiled
-def _sweep(x, start, first, last, upper, watch, after, apart, mobility, sweep):
+def _sweep(x, start, first, last, upper, watch, after, apart, floor, mobility, sweep):
     """Part pairs ``first`` to ``last`` of which a particle was moved lately, or unite them in zones; how many met."""
     close, met = np.float32(0.5) * apart, 0
     bodies, normals, moved, zones = watch.bodies, watch.normals, watch.moved, watch.zones
@@ -113,37 +123,38 @@ def _sweep(x, start, first, last, upper, watch, after, apart, mobility, sweep):
         scale = 1.0 / np.sqrt(wx * wx + wy * wy + wz * wz + TINY)
         nx, ny, nz = np.float32(wx * scale), np.float32(wy * scale), np.float32(wz * scale)
         normals[p, 0], normals[p, 1], normals[p, 2] = nx, ny, nz
-        need = min(apart, _gap(start, bodies, p, upper, nx, ny, nz) - np.float32(ROUNDING))
+        need = min(apart, _gap(start, bodies, p, upper, nx, ny, nz))
         gap = _gap(x, bodies, p, upper, nx, ny, nz)
         if gap >= need:
             continue
-        met += 1
         if sweep <= SWEEPS:
             missing = need - gap + np.float32(FARTHER) * apart
-            _part(x, bodies, p, upper, nx, ny, nz, missing, mobility, moved, sweep)
+            _part(x, bodies, p, upper, nx, ny, nz, missing, floor, mobility, moved, sweep)
+            met += 1
         else:
-            root = _root(zones, a)
-            for m in range(1, 4):
-                zones[_root(zones, bodies[p, m])] = root
+            # What is in one zone already moves alike but for rounding.
+            met += _unite(zones, a, b, c, d)
     return met
 
 
 @compiled
-def _move_zones(x, start, mobility, zones, sums, moved, sweep):
+def _move_zones(x, start, floor, mobility, zones, sums, moved, sweep):
     """Let what is in a zone move as one; how many particles are in zones.
 
     Args:
         x, start: positions [m], shape (N, 3), now, which are changed, and at the start of the substep.
+        floor: no zone moves particles down that are lower [m], nor lower than that.
         mobility: inverse masses; 0 for held particles, shape (N,).
         zones: of each particle another of its zone, or itself, shape (N,).
-        sums: overwritten, shape (N, 5).
+        sums: overwritten, shape (N, 6).
         moved: gets the number of the ``sweep`` where particles were moved, shape (N,).
     """
     zero, one = np.float32(0.0), np.float32(1.0)
-    sums[:, :] = zero
+    sums[:, :], sums[:, 5] = zero, np.float32(-1e9)
     for i in range(x.shape[0]):
         root, held = _root(zones, i), mobility[i] == zero
         sums[root, 4] += one
+        sums[root, 5] = max(sums[root, 5], min(zero, floor - start[i, 2]))
         # Where grippers hold some of it, only these count.
         if held and sums[root, 3] >= zero:
             sums[root, :4] = zero
@@ -158,14 +169,15 @@ def _move_zones(x, start, mobility, zones, sums, moved, sweep):
         if sums[root, 4] > one:
             count += 1
             for axis in range(3):
-                there = start[i, axis] + sums[root, axis] / abs(sums[root, 3])
+                way = sums[root, axis] / abs(sums[root, 3])
+                there = start[i, axis] + (way if axis < 2 else max(way, sums[root, 5]))
                 if x[i, axis] != there:
                     x[i, axis], moved[i] = there, sweep
     return count
 
 
 @compiled
-def _part_all(x, start, after, apart, mobility, watch):
+def _part_all(x, start, after, apart, floor, mobility, watch):
     """Part all that is listed; how many particles moved in zones."""
     counts, last = watch.counts, watch.bodies.shape[0]
     watch.moved[:] = 0
@@ -174,10 +186,10 @@ def _part_all(x, start, after, apart, mobility, watch):
     sweep, met, count = 0, 1, 0
     while met > 0:
         sweep += 1
-        met = _sweep(x, start, 0, counts[0], 1, watch, after, apart, mobility, sweep)
-        met += _sweep(x, start, last - counts[1], last, 2, watch, after, apart, mobility, sweep)
+        met = _sweep(x, start, 0, counts[0], 1, watch, after, apart, floor, mobility, sweep)
+        met += _sweep(x, start, last - counts[1], last, 2, watch, after, apart, floor, mobility, sweep)
         if met > 0 and sweep > SWEEPS:
-            count = _move_zones(x, start, mobility, watch.zones, watch.sums, watch.moved, sweep)
+            count = _move_zones(x, start, floor, mobility, watch.zones, watch.sums, watch.moved, sweep)
     return count
 
 
@@ -219,9 +231,9 @@ def keep_apart(x, start, dt, thickness, edge_length, corners, edges, mobility, w
         watch: what is close, changed.
 
     Returns:
-        Whether there was room for what is close.
+        Whether there was room for what is close where nothing moves.
     """
-    counts, apart = watch.counts, np.float32(APART) * thickness
+    counts, apart, floor = watch.counts, np.float32(APART) * thickness, np.float32(0.5) * thickness
     old = counts[2] >= counts[3]
     for _ in range(ATTEMPTS):
         watch.off[:] = np.float32(0.0)
@@ -231,15 +243,16 @@ def keep_apart(x, start, dt, thickness, edge_length, corners, edges, mobility, w
             old = strays > 0 and not _follow(strays, dt, corners, edges, watch)
         if old:
             if not list_close(x, start, dt, edge_length, corners, edges, watch):
-                return False
+                break
             watch.off[:], old = np.float32(0.0), False
         after = np.float32(counts[2] + 1) * dt
-        zoned = _part_all(x, start, after, apart, mobility, watch)
+        zoned = _part_all(x, start, after, apart, floor, mobility, watch)
         if _look(x, after, watch) == 0:
             counts[2] += 1
             counts[4] += zoned
             return True
     x[:, :] = start
-    counts[2], counts[3] = 0, 0
     counts[4] += x.shape[0]
-    return True
+    listed = list_close(x, start, dt, edge_length, corners, edges, watch)
+    counts[2], counts[3] = 0, 0
+    return listed

@@ -40,7 +40,7 @@ class Watch(NamedTuple):
             shape (N, 3).
         boxes: what each particle may reach while the list holds [m], low corner, then high corner, shape (N, 6).
         allowed, off: how far each may leave its path, and how far it is off now [m], shape (N,).
-        moved, zones, sums: what impact zones need, shapes (N,), (N,) and (N, 5).
+        moved, zones, sums: what impact zones need, shapes (N,), (N,) and (N, 6).
     """
 
     bodies: NDArray[Any]
@@ -72,7 +72,7 @@ def watch_memory(count: int) -> Watch:
         np.zeros(count, np.float32),
         np.zeros(count, np.int32),
         np.zeros(count, np.int32),
-        np.zeros((count, 5), np.float32),
+        np.zeros((count, 6), np.float32),
     )
 
 

@@ -108,7 +108,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             clock[1] = HORIZON if listing == CROWDED else clock[1] + 1
             predict(x, v, previous, start, mobility, dt, fastest)
             if grasped.shape[0] > 0:
-                carry(x, grasped, offsets, arm, directions, path, turns, k)
+                carry(x, grasped, offsets, arm, directions, path, turns, k, fastest * dt)
             fall = np.float32(9.81) * dt * dt
             warm_start(x, mobility, clock[4], bodies, responses, contact_normals, source, load, table_load, fall)
             if grasped.shape[0] > 0:

@@ -51,8 +51,11 @@ def predict(x, v, previous, start, mobility, dt, fastest):
 
 
 @compiled
-def carry(x, grasped, offsets, arm, directions, path, turns, k):
-    """Put the grasped particles where the grippers are, turned about the crease's direction."""
+def carry(x, grasped, offsets, arm, directions, path, turns, k, most):
+    """Put the grasped particles where the grippers are, turned about the crease's direction.
+
+    What was held back catches up by at most ``most`` [m].
+    """
     c, s = turns[k, 0], turns[k, 1]
     for g in range(grasped.shape[0]):
         a = arm[g]
@@ -61,9 +64,15 @@ def carry(x, grasped, offsets, arm, directions, path, turns, k):
         up = offsets[g, 2]
         turned, risen = c * forward + s * up, c * up - s * forward
         i = grasped[g]
-        x[i, 0] = path[k, a, 0] + offsets[g, 0] + (turned - forward) * ux
-        x[i, 1] = path[k, a, 1] + offsets[g, 1] + (turned - forward) * uy
-        x[i, 2] = path[k, a, 2] + risen
+        px = path[k, a, 0] + offsets[g, 0] + (turned - forward) * ux
+        py = path[k, a, 1] + offsets[g, 1] + (turned - forward) * uy
+        pz = path[k, a, 2] + risen
+        dx, dy, dz = px - x[i, 0], py - x[i, 1], pz - x[i, 2]
+        way_2 = dx * dx + dy * dy + dz * dz
+        if way_2 > most * most:
+            share = most / np.sqrt(way_2)
+            px, py, pz = x[i, 0] + share * dx, x[i, 1] + share * dy, x[i, 2] + share * dz
+        x[i, 0], x[i, 1], x[i, 2] = px, py, pz
 
 
 @compiled
