@@ -102,9 +102,10 @@ def _halve(world: Any, sample: Garment, seed: int) -> None:
 
 
 def _by_ipctk(shares: tuple[float | None, ...]) -> str:
-    if None in shares:
+    known = [share for share in shares if share is not None]
+    if len(known) < len(shares):
         return "install it: pip install ipctk"
-    return f"{percent(float(np.mean(shares)), 2)}, at most {percent(float(np.max(shares)), 2)}"
+    return f"{percent(float(np.mean(known)), 2)}, at most {percent(max(known), 2)}"
 
 
 def _share(mesh: Mesh, positions: NDArray[np.float64]) -> float | None:
