@@ -13,7 +13,7 @@ from polyfold.garments import Fabric, Mesh
 from polyfold.geometry import Camera
 from polyfold.types import Action
 from polyfold_xpbd.grasp import Grasp, plan_motion, take_hold
-from polyfold_xpbd.kernels.close import watch_memory
+from polyfold_xpbd.kernels.guarantee.close import watch_memory
 from polyfold_xpbd.kernels.loop import DIVERGED, SETTLED, advance
 from polyfold_xpbd.kernels.vectors import vertex_normals
 from polyfold_xpbd.model import ClothModel, build_model

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from polyfold_xpbd.kernels.apart import keep_apart
 from polyfold_xpbd.kernels.contact import resolve, table, warm_start
+from polyfold_xpbd.kernels.guarantee.apart import keep_apart
 from polyfold_xpbd.kernels.listing import CROWDED, HORIZON, IMPOSSIBLE, PARTIAL, WHOLE, list_anew
 from polyfold_xpbd.kernels.motion import carry, damp, is_finite, predict, rests, velocities
 from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, stretch
@@ -30,7 +30,7 @@ REST_OVER = 40
 
 def _digest() -> str:
     """SHA-256 of the kernels' sources."""
-    sources = sorted(Path(__file__).parent.glob("*.py"))
+    sources = sorted(Path(__file__).parent.rglob("*.py"))
     return hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
 
 

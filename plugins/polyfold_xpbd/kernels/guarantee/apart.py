@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from polyfold_xpbd.kernels.close import MOST_STRAYS, list_around, list_close
-from polyfold_xpbd.kernels.distance import TINY, between_edges, from_triangle
+from polyfold_xpbd.kernels.guarantee.close import MOST_STRAYS, list_around, list_close
+from polyfold_xpbd.kernels.guarantee.distance import TINY, between_edges, from_triangle
 from polyfold_xpbd.kernels.vectors import compiled
 
 APART, FARTHER = 0.1, 0.01

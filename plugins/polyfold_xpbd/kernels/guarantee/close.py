@@ -1,4 +1,4 @@
-"""All vertices and triangles, and all edges, that could touch soon: what :mod:`polyfold_xpbd.kernels.apart` watches.
+"""All vertices and triangles, and all edges, that could touch soon: what is watched, so that it stays apart.
 
 Unlike the pairs that contact is solved for, none is left out, whatever lies between.
 """
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold_xpbd.kernels.distance import between_edges, from_triangle
+from polyfold_xpbd.kernels.guarantee.distance import between_edges, from_triangle
 from polyfold_xpbd.kernels.near import ROOM, gather, sort_by_cell, swept_boxes
 from polyfold_xpbd.kernels.vectors import compiled
 
