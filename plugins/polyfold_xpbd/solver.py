@@ -258,7 +258,8 @@ class Solver:
             model.hinges, model.hinge_weights, model.elastic, self._set, self._rest, model.normal_corners, model.panel,
             model.normal_use, self._clock, self._listed, self._foreseen, self._rested, self._sharp, self._stray,
             self._order, *self._again, self._moved, *self._vertex_range, *self._edge_range, self._first, *self._pairs,
-            *self._old_pairs, *self._contacts, self._table_load, *held, self._watch,
+            *self._old_pairs, *self._contacts, self._table_load, *held,
+            None if self._watch is None else tuple(self._watch),
             first, last, self._settings, np.float32(damping), np.float32(rest_speed),
         )  # fmt: skip
 

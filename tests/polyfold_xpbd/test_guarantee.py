@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from polyfold_xpbd.kernels.loop import advance
 
 from experiments.benchmarks.cloth.folding import cloth_mask, random_action
 from experiments.benchmarks.cloth.measures import crossing_edges
@@ -56,6 +57,12 @@ def test_a_state_made_without_the_guarantee_is_refused(guaranteed):
     other.reset(plugins.generate_garment("square", SEED, 0.0155), SEED)
     with pytest.raises(SimulationError, match="without the guarantee"):
         simulator.restore(other.state())
+
+
+def test_no_class_of_ours_is_in_numba_s_cache(guaranteed):
+    assert guaranteed[0] == 0.0
+    assert not [signature for signature in advance.nopython_signatures if "polyfold" in repr(signature)]
+    assert not [signature for signature in advance.nopython_signatures if "Watch" in repr(signature)]
 
 
 def held_tshirt(guaranteed):

@@ -11,6 +11,7 @@ from numba import njit
 
 from polyfold_xpbd.kernels.contact import resolve, table, warm_start
 from polyfold_xpbd.kernels.guarantee.apart import keep_apart
+from polyfold_xpbd.kernels.guarantee.close import Watch
 from polyfold_xpbd.kernels.listing import CROWDED, HORIZON, IMPOSSIBLE, PARTIAL, WHOLE, list_anew
 from polyfold_xpbd.kernels.motion import carry, damp, is_finite, predict, rests, velocities
 from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, stretch
@@ -53,7 +54,8 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                 and the contacts in use, int64, shape (5,).
             settings: time step [s], thickness, slack and cell [m], friction of table and cloth, recovery [m] and top
                 speed [m/s], share of a crease that stays, lead of bending [s], mean normal of a bend, shape (11,).
-            watch: what the guarantee watches; without it, None, nothing is guaranteed.
+            watch: the arrays of a :class:`Watch`; None guarantees nothing. A class in the signature would be in numba's
+                cache, and numba 0.68 loads even a stale one: moved or renamed, it could not be imported.
 
         Returns:
             (status, substeps done).
@@ -121,7 +123,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             table(x, previous, mobility, table_load, floor, table_friction)
             parted = True
             if watch is not None:
-                parted = keep_apart(x, start, dt, thickness, cell, corners, edges, mobility, watch)
+                parted = keep_apart(x, start, dt, thickness, cell, corners, edges, mobility, Watch(*watch))
             if not parted:
                 return DIVERGED, k
             velocities(x, previous, start, v, inverse_dt)
