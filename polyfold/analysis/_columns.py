@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from polyfold.analysis._differences import difference, share_difference
+from polyfold.analysis._intervals import Estimate, Labels, mean, share
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.logs import RunRecord, StudyEpisodeRecord
 
@@ -26,6 +28,28 @@ class Column:
     digits: int
     is_success: bool
     value: Callable[[StudyEpisodeRecord], float | None]
+
+    def over(self, records: Sequence[StudyEpisodeRecord]) -> Estimate:
+        """The mean over episodes, with an interval for other sentences and garments."""
+        values = [self.value(record) for record in records]
+        if self.is_success:
+            return share([None if value is None else value > 0 for value in values], *shared(records))
+        return mean(values, *shared(records))
+
+    def between(self, ours: Sequence[StudyEpisodeRecord], theirs: Sequence[StudyEpisodeRecord]) -> Estimate:
+        """Mean difference, ours − theirs, over the same episodes in the same order."""
+        first, second = ([self.value(record) for record in records] for records in (ours, theirs))
+        if self.is_success:
+            pair = ([None if value is None else value > 0 for value in values] for values in (first, second))
+            return share_difference(*pair, *shared(ours))
+        return difference(first, second, *shared(ours))
+
+
+def shared(records: Sequence[StudyEpisodeRecord]) -> tuple[Labels, Labels]:
+    """What episodes share with others: their sentences and their garments."""
+    sentences = [(record.task or record.instruction, record.wording) for record in records]
+    garments = [(record.garment.kind, record.garment.name, record.garment.seed) for record in records]
+    return sentences, garments
 
 
 def columns_of(run: RunRecord) -> list[Column]:

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from polyfold.analysis._columns import shared
+from polyfold.analysis._intervals import Estimate, ratio, share
 from polyfold.analysis._results import Results
-from polyfold.analysis._statistics import Estimate, ratio
 from polyfold.analysis._tables import Cell, Figure, Table
 from polyfold.logs import StudyEpisodeRecord
 from polyfold.logs._accounts import Account
@@ -36,6 +37,10 @@ class Measure:
 
 def _one(record: StudyEpisodeRecord) -> float:
     return 1.0
+
+
+def _succeeded(record: StudyEpisodeRecord) -> float:
+    return 100.0 * record.succeeded
 
 
 def _total(record: StudyEpisodeRecord, taken: Taken) -> float | None:
@@ -69,7 +74,7 @@ def _latency(record: StudyEpisodeRecord) -> float | None:
 
 
 MEASURES: dict[str, Measure] = {
-    "success %": Measure(lambda record: 100.0 * record.succeeded, _one),
+    "success %": Measure(_succeeded, _one),
     "valid at once %": Measure(lambda record: _percent(record, lambda account: account.valid_at_once), _questions),
     "valid after repair %": Measure(lambda record: _percent(record, lambda account: account.valid), _questions),
     "subgoal failures %": Measure(lambda record: 100.0 * (record.cause == "subgoal"), _one),
@@ -83,9 +88,12 @@ MEASURES: dict[str, Measure] = {
 
 
 def measured(records: Sequence[StudyEpisodeRecord], measure: str) -> Estimate:
-    """A measure over the episodes of one variant, with its 95 % interval from resampled episodes."""
+    """A measure over the episodes of one variant, with its 95 % interval for other sentences and garments."""
     found = MEASURES[measure]
-    return ratio([found.total(record) for record in records], [found.count(record) for record in records])
+    if found.total is _succeeded:
+        return share([record.succeeded for record in records], *shared(records))
+    counts = [found.count(record) for record in records]
+    return ratio([found.total(record) for record in records], counts, *shared(records))
 
 
 def provider_table(results: Results) -> Table:
@@ -123,9 +131,9 @@ def _said(records: Sequence[StudyEpisodeRecord], said: Callable[[Account], Itera
 
 def _note(results: Results) -> str:
     text = (
-        f"{results.study.name}: mean [95 % bootstrap interval over episodes]; – is unknown. Valid: share of questions "
-        "(decompositions, fold lines) with a first answer, or one in the end, that could be used. Failures: share of "
-        "episodes whose first error is there. Latency: of calls that were answered, without failed tries and waits. "
+        f"{results.study.name}: mean [95 % interval for other sentences and garments]; – is unknown. Valid: share of "
+        "questions (decompositions, fold lines) with a first answer, or one in the end, that could be used. Failures: "
+        "share of episodes whose first error is there. Latency: of calls that were answered, without failed tries and waits. "
         "Tokens and cost: per episode."
     )
     models = {variant: results.of(variant) for variant in results.study.variants}

@@ -9,7 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from polyfold.analysis._statistics import Estimate
+from polyfold.analysis._intervals import Estimate
+
+CERTAIN = "†"
+"""Mark of a difference that is certain."""
 
 FORMATS = ("markdown", "html", "latex", "csv")
 
@@ -23,12 +26,14 @@ class Figure:
         digits: after the point.
         signed: whether to write a plus, for differences.
         note: what follows, such as on how many episodes it rests.
+        certain: whether a difference remains when all of its table's are looked at.
     """
 
     value: Estimate
     digits: int = 1
     signed: bool = False
     note: str = ""
+    certain: bool = False
 
     @property
     def is_known(self) -> bool:
@@ -43,14 +48,18 @@ class Figure:
     @property
     def ends(self) -> tuple[str, str]:
         """The ends of the interval as text."""
-        return f"{self.value.low:.{self.digits}f}", f"{self.value.high:.{self.digits}f}"
+        return _bound(self.value.low, self.digits), _bound(self.value.high, self.digits)
 
     def __str__(self) -> str:
         interval = f" [{self.ends[0]}, {self.ends[1]}]" if self.is_known else ""
-        return f"{self.mean}{interval}" + (f" {self.note}" if self.note else "")
+        return f"{self.mean}{interval}{CERTAIN if self.certain else ''}" + (f" {self.note}" if self.note else "")
 
 
 Cell = str | Figure
+
+
+def _bound(end: float, digits: int) -> str:
+    return f"{end:.{digits}f}" if math.isfinite(end) else ("−∞" if end < 0 else "∞")
 
 
 @dataclass(frozen=True)

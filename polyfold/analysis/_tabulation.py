@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from polyfold.analysis._columns import Column, column_of, columns_of
+from polyfold.analysis._columns import Column, column_of, columns_of, shared
+from polyfold.analysis._differences import holm
+from polyfold.analysis._intervals import Estimate, mean
 from polyfold.analysis._results import Results
-from polyfold.analysis._statistics import estimate, paired
-from polyfold.analysis._tables import Cell, Figure, Table
+from polyfold.analysis._tables import CERTAIN, Cell, Figure, Table
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.logs import StudyEpisodeRecord
 from polyfold.types._views import makes
@@ -18,6 +19,9 @@ REFERENCES = {
     "ideal": "the flat garment folded geometrically along the task's lines",
 }
 """What results are compared with, in words."""
+
+INTERVAL = "95 % interval for other sentences and garments"
+TEST = "not 0, p < 0.05 by exact McNemar and sign flips of sentences or garments, after Holm over the table's cells"
 
 Key = Callable[[StudyEpisodeRecord], str | None]
 
@@ -35,7 +39,7 @@ def table(
 ) -> Table:
     """Variants by garment kind (``kind``), task type (``type``), ``task``, ``split``, ``step``, or all (``none``).
 
-    Cells are means with 95 % bootstrap intervals; n is the number of episodes.
+    Cells are means with 95 % intervals for other sentences and garments; n is the number of episodes.
 
     Args:
         results: what to tabulate.
@@ -70,7 +74,7 @@ def _chosen(results: Results, columns: Sequence[str] | None) -> list[Column]:
 
 
 def _note(results: Results, noise: Results | None) -> str:
-    note = f"{results.study.name}: mean [95 % bootstrap interval]; reference: {REFERENCES[results.study.reference]}."
+    note = f"{results.study.name}: mean [{INTERVAL}]; reference: {REFERENCES[results.study.reference]}."
     note += _remarks(results)
     return note if noise is None else f"{note} {noise_floor(noise)}"
 
@@ -103,13 +107,17 @@ def _by_step(results: Results) -> Table:
     rows: list[list[Cell]] = []
     for variant in results.study.variants:
         for kind, records in _grouped(results, variant, "kind"):
-            errors = [record.step_errors_mm for record in records]
-            after = [[found[step] for found in errors if len(found) > step] for step in range(most)]
-            cells = [Figure(estimate(values), note=f"(n={len(values)})") if values else "–" for values in after]
-            rows.append([_marked(variant, records), kind, *cells])
+            rows.append([_marked(variant, records), kind, *(_after(step, records) for step in range(most))])
     note = f"{results.study.name}: mean particle error [mm] after each fold of the episode's own."
     note += _remarks(results)
     return Table(["variant", "kind", *(f"step {step + 1}" for step in range(most))], rows, note)
+
+
+def _after(step: int, records: Sequence[StudyEpisodeRecord]) -> Cell:
+    there = [record for record in records if len(record.step_errors_mm) > step]
+    if not there:
+        return "–"
+    return Figure(mean([record.step_errors_mm[step] for record in there], *shared(there)), note=f"(n={len(there)})")
 
 
 def _published(results: Results, columns: Sequence[Column], groups: Iterable[str]) -> list[list[Cell]]:
@@ -123,7 +131,7 @@ def _published(results: Results, columns: Sequence[Column], groups: Iterable[str
 
 
 def _mean(column: Column, records: Sequence[StudyEpisodeRecord]) -> Figure:
-    return Figure(estimate([column.value(record) for record in records]), column.digits)
+    return Figure(column.over(records), column.digits)
 
 
 def _marked(variant: str, records: Sequence[StudyEpisodeRecord]) -> str:
@@ -155,21 +163,27 @@ def compare(results: Results, variant: str, baseline: str, columns: Sequence[str
             raise ConfigError(f"there is no variant {name!r}; {did_you_mean(name, results.study.variants)}")
     chosen = _chosen(results, columns)
     ours, theirs = (_by_episode(results.of(name)) for name in (variant, baseline))
-    shared = [key for key in ours if key in theirs]
-    rows: list[list[Cell]] = []
+    both = [key for key in ours if key in theirs]
+    labels: list[tuple[str, str]] = []
+    found: list[list[Estimate]] = []
     for kind in [*results.kinds(), "all"]:
-        keys = [key for key in shared if kind in ("all", ours[key].garment.kind)]
+        keys = [key for key in both if kind in ("all", ours[key].garment.kind)]
         if keys:
+            labels.append((kind, str(len(keys))))
             pair = [ours[key] for key in keys], [theirs[key] for key in keys]
-            rows.append([kind, str(len(keys)), *(_difference(column, *pair) for column in chosen)])
-    note = f"{variant} − {baseline}, the same episodes; mean [95 % bootstrap interval]."
+            found.append([column.between(*pair) for column in chosen])
+    adjusted = iter(holm([estimate.p for row in found for estimate in row]))
+    rows: list[list[Cell]] = [
+        [*label, *(_difference(column, value, next(adjusted)) for column, value in zip(chosen, row, strict=True))]
+        for label, row in zip(labels, found, strict=True)
+    ]
+    note = f"{variant} − {baseline}, the same episodes; mean [{INTERVAL}]. {CERTAIN}: {TEST}."
     note += _remarks(results)
     return Table(["kind", "n", *(column.heading for column in chosen)], rows, note)
 
 
-def _difference(column: Column, ours: Sequence[StudyEpisodeRecord], theirs: Sequence[StudyEpisodeRecord]) -> Figure:
-    found = paired([column.value(record) for record in ours], [column.value(record) for record in theirs])
-    return Figure(found, column.digits, signed=True)
+def _difference(column: Column, value: Estimate, adjusted: float | None) -> Figure:
+    return Figure(value, column.digits, signed=True, certain=adjusted is not None and adjusted < 0.05)
 
 
 def _by_episode(records: Sequence[StudyEpisodeRecord]) -> dict[tuple[Any, ...], StudyEpisodeRecord]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from polyfold.analysis import Results, estimate
+from polyfold.analysis import Results
 from polyfold.analysis._columns import column_of
 from polyfold.types._views import makes
 
@@ -14,7 +14,7 @@ PALETTE = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8
 
 @makes(Results, "bars")
 def bars(results: Results, column: str = "success %") -> Any:
-    """One group of bars per garment kind, one bar per variant, 95 % bootstrap intervals.
+    """One group of bars per garment kind, one bar per variant, 95 % intervals.
 
     Args:
         results: of a study.
@@ -31,7 +31,7 @@ def bars(results: Results, column: str = "success %") -> Any:
     axes = figure.subplots()
     width = 0.8 / len(variants)
     for number, variant in enumerate(variants):
-        found = [estimate([chosen.value(record) for record in results.of(variant, kind)]) for kind in kinds]
+        found = [chosen.over(results.of(variant, kind)) for kind in kinds]
         at = [place + (number - (len(variants) - 1) / 2) * width for place in range(len(kinds))]
         means = [value.mean for value in found]
         spans = [[v.mean - v.low for v in found], [v.high - v.mean for v in found]]

@@ -26,7 +26,7 @@ PANELS: Sequence[tuple[str, Sequence[str]]] = (
 
 
 def provider_figure(results: Results) -> Figure:
-    """The table as a picture: a panel a measure, a row a model, bars with 95 % bootstrap intervals.
+    """The table as a picture: a panel a measure, a row a model, bars with 95 % intervals.
 
     Returns:
         A matplotlib figure. Unknown values are a dash.

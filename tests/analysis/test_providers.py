@@ -7,7 +7,7 @@ from polyfold_rules.rules import RulesLLM
 
 import polyfold
 from experiments.benchmarks.language.loopback import Sent, answering, completion, serve
-from polyfold.analysis import Results, estimate, open_results, provider_table
+from polyfold.analysis import Results, open_results, provider_table, share, shared
 from polyfold.analysis._providers import MEASURES, measured
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError
@@ -106,7 +106,7 @@ def test_what_is_unknown_is_a_dash_and_never_nothing(results):
 def test_success_is_the_same_figure_as_in_every_table(results):
     for variant in results.study.variants:
         records = results.of(variant)
-        assert measured(records, "success %") == estimate([100.0 * r.succeeded for r in records])
+        assert measured(records, "success %") == share([r.succeeded for r in records], *shared(records))
 
 
 def changed(results, variant, **changes):

@@ -17,8 +17,7 @@ from polyfold_fgpnp.training.training import train
 import polyfold
 from experiments.benchmarks.policies import heldout
 from experiments.benchmarks.policies.heldout_tables import correlation_table, over_garments, regret_table, tried
-from polyfold import plugins
-from polyfold.analysis import estimate
+from polyfold import analysis, plugins
 from polyfold.errors import PlanError
 from polyfold.logs import JsonLines
 
@@ -147,7 +146,7 @@ def test_a_fold_that_diverged_is_left_out_and_shows_in_the_count(folds):
 def test_intervals_draw_whole_garments(folds):
     many = Dataset(folds.description, {"garment_seed": np.repeat(np.arange(10), 50)})
     values = np.repeat(np.arange(10) % 2, 50).astype(float)
-    found, naive = over_garments(many, values), estimate(values)
+    found, naive = over_garments(many, values), analysis.mean(values.tolist())
     assert found.mean == naive.mean == 0.5
     assert found.high - found.low > 4 * (naive.high - naive.low)
     values[:50] = np.nan

@@ -30,7 +30,7 @@ from polyfold_fgpnp.policies.learned import CoupledActionMap
 from polyfold_fgpnp.policies.region import FoldRegion, fold_region
 from polyfold_fgpnp.training.ranks import rank_correlation
 
-from polyfold.analysis import Estimate, Table, ratio, shown
+from polyfold.analysis import Estimate, Table, mean, shown
 from polyfold.errors import PlanError
 from polyfold.geometry import FoldLine
 from polyfold.types import Scene
@@ -47,11 +47,8 @@ RECIPE = "uniform"
 
 
 def over_garments(data: Dataset, values: Floats) -> Estimate:
-    """Mean of values by state, shape (S,), NaN where there is none, with an interval from drawing garments."""
-    there = np.isfinite(values)
-    garments = np.unique(data["garment_seed"])
-    groups = [there & (data["garment_seed"] == garment) for garment in garments]
-    return ratio([values[group].sum() for group in groups], [int(group.sum()) for group in groups])
+    """Mean of values by state, shape (S,), NaN where there is none, with an interval for other garments."""
+    return mean(values.tolist(), data["garment_seed"].tolist())
 
 
 def tried(data: Dataset) -> Iterator[NDArray[np.int64]]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.analysis import Estimate, Results, ratio
+from polyfold.analysis import Estimate, Results, mean
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.logs import StudyEpisodeRecord
 from polyfold_fgpnp.studies.variants import Learned, learned
@@ -63,12 +63,9 @@ class Scores:
         return np.array([self.mean(point.variant, kind) for point in points])
 
     def over_garments(self, variants: Sequence[str]) -> Estimate:
-        """Score, the mean of some variants, with an interval from drawing garments."""
+        """Score, the mean of some variants, with an interval for other garments."""
         values = np.mean([self._values[variant] for variant in variants], axis=0)
-        garments: dict[tuple[str, int], list[float]] = {}
-        for (kind, seed, *_), value in zip(self.episodes, values, strict=True):
-            garments.setdefault((kind, seed), []).append(value)
-        return ratio([sum(found) for found in garments.values()], [len(found) for found in garments.values()])
+        return mean(values.tolist(), [(kind, seed) for kind, seed, *_ in self.episodes])
 
     def by_epoch(self) -> dict[int, list[Learned]]:
         """The trainings evaluated after each epoch. Raises ConfigError if their data sizes differ."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from polyfold.analysis import share, shared
 from polyfold.evaluation._criteria import needed_scale
 from polyfold.logs import StudyEpisodeRecord
 from polyfold.types import Threshold
@@ -21,7 +22,7 @@ class Curve:
     """Share of successes with thresholds scaled by ``SCALES``.
 
     Attributes:
-        shares, low, high: share and its 95 % Wilson interval, 0 to 1, one per scale.
+        shares, low, high: share and its 95 % interval, 0 to 1, one per scale; NaN without episodes.
         n: number of episodes.
     """
 
@@ -38,11 +39,11 @@ def success_curve(records: Sequence[StudyEpisodeRecord], thresholds: Sequence[Th
     never succeeds; a goal that is done by its own bounds does with any thresholds.
     """
     needed = np.array([smallest_scale(record, thresholds) for record in records])
-    counts = [int(np.count_nonzero(needed <= scale + 1e-9)) for scale in SCALES]
-    n = len(records)
-    intervals = [wilson(count, n) for count in counts]
-    shares = tuple(count / n if n else 0.0 for count in counts)
-    return Curve(shares, tuple(low for low, _ in intervals), tuple(high for _, high in intervals), n)
+    found = [share((needed <= scale + 1e-9).tolist(), *shared(records)) for scale in SCALES]
+    shares, low, high = (
+        tuple(values) for values in zip(*((e.mean / 100, e.low / 100, e.high / 100) for e in found), strict=True)
+    )
+    return Curve(shares, low, high, len(records))
 
 
 def scaled(threshold: Threshold, scale: float) -> Threshold:
@@ -63,13 +64,3 @@ def smallest_scale(record: StudyEpisodeRecord, thresholds: Sequence[Threshold]) 
     return needed_scale(
         {name: math.nan if value is None else value for name, value in record.metrics.items()}, thresholds
     )
-
-
-def wilson(successes: int, n: int) -> tuple[float, float]:
-    """95 % interval of a share, 0 to 1; unlike the bootstrap it has a width where all or none succeeded."""
-    if n == 0:
-        return 0.0, 1.0
-    z = 1.959964
-    share, middle = successes / n, (successes + z * z / 2) / (n + z * z)
-    half = z / (n + z * z) * math.sqrt(n * share * (1 - share) + z * z / 4)
-    return max(0.0, middle - half), min(1.0, middle + half)

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from polyfold.analysis import Estimate, Table, estimate
+from polyfold.analysis import Estimate, Table, share, shared
 from polyfold.analysis._columns import Column, columns_of
 from polyfold.analysis._tables import Figure
 from polyfold.evaluation._attribution import CAUSES
@@ -34,14 +34,14 @@ def legend(names: Iterable[str]) -> list[tuple[str, int]]:
 
 
 def _success(records: Sequence[StudyEpisodeRecord]) -> Estimate:
-    return estimate([100.0 * record.succeeded for record in records])
+    return share([record.succeeded for record in records], *shared(records))
 
 
 def headline(source: Source) -> list[dict[str, str]]:
     """The first variant's figures, success before metrics: what is read first."""
     records = source.of(source.variants[0])
     columns = sorted(columns_of(source.results.run), key=lambda column: not column.is_success)
-    return [_figure(column, estimate([column.value(record) for record in records])) for column in columns]
+    return [_figure(column, column.over(records)) for column in columns]
 
 
 def _figure(column: Column, value: Estimate) -> dict[str, str]:

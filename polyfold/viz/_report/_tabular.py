@@ -23,7 +23,7 @@ def table_html(table: Table, columns_of_text: int, differences: bool = False) ->
     Args:
         table: what to show; its note becomes the caption below.
         columns_of_text: leading columns that are labels; the others are figures.
-        differences: dim figures whose interval includes zero.
+        differences: dim figures that are not certain.
     """
     head = Markup("").join(_header(name, index < columns_of_text) for index, name in enumerate(table.headers))
     body, before = [], None
@@ -56,7 +56,7 @@ def _label(cell: Cell, index: int, fresh: bool) -> Markup:
 def _value(cell: Cell, difference: bool) -> Markup:
     if isinstance(cell, str) or not cell.is_known:
         return Markup("<td>{}</td>").format(cell)
-    unsure = difference and cell.value.low <= 0.0 <= cell.value.high
+    unsure = difference and not cell.certain
     low, high = cell.ends
     return Markup('<td{}>{} <span class="interval">[{}, {}]</span>{}</td>').format(
         Markup(' class="unsure"') if unsure else "",

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from made_up_runs import BAD, GOOD, picture, record
 
 import polyfold.viz._report
-from polyfold.analysis import estimate
+from polyfold.analysis import Estimate, wilson
 from polyfold.evaluation._criteria import criteria, succeeded
 from polyfold.viz._report._charts import Part, bar, curve_panel, dot
-from polyfold.viz._report._curves import SCALES, success_curve, wilson
+from polyfold.viz._report._curves import SCALES, success_curve
 from polyfold.viz._report._gallery import gallery
 from polyfold.viz._report._source import open_source
 
@@ -83,7 +83,7 @@ def test_bars_fill_their_share_of_the_width(lengths):
 
 def test_dots_stay_on_the_axis():
     for percent in (0.0, 100.0):
-        places = re.findall(r'(?:cx|x1|x2)="([\d.]+)%"', dot(estimate([percent] * 4), 0))
+        places = re.findall(r'(?:cx|x1|x2)="([\d.]+)%"', dot(Estimate(percent, percent, percent, 4), 0))
         assert all(0 <= float(place) <= 100 for place in places)
 
 
