@@ -78,30 +78,33 @@ def ratio(totals: Sequence[float | None], counts: Sequence[float], *clusters: La
         counts: what each is the total of; episodes with 0 are left out.
         clusters: as in :func:`mean`.
     """
-    known = np.array([a is not None and math.isfinite(a) and b > 0 for a, b in zip(totals, counts, strict=True)], bool)
-    if not known.any():
+    numerators, denominators, known = _known(totals, counts)
+    if len(numerators) == 0:
         return Estimate(math.nan, math.nan, math.nan, 0)
-    numerators = np.array([math.nan if a is None else a for a in totals], float)[known]
-    denominators = np.asarray(counts, float)[known]
     value = numerators.sum() / denominators.sum()
     found = spread((numerators - value * denominators) / denominators.sum(), *codes_of(clusters, known))
     low, high = _studentised(float(value), found)
-    return Estimate(float(value), low, high, int(known.sum()))
+    return Estimate(float(value), low, high, len(numerators))
 
 
 def share(values: Sequence[bool | None], *clusters: Labels) -> Estimate:
     """Share of what is true [%]; None (nothing to tell) is left out. Arguments as for :func:`mean`."""
-    known = np.array([value is not None for value in values], bool)
-    n = int(known.sum())
+    return share_of(values, [1.0] * len(values), *clusters)
+
+
+def share_of(totals: Sequence[float | None], counts: Sequence[float], *clusters: Labels) -> Estimate:
+    """Share of many things in an episode [%], such as valid answers of all; arguments as for :func:`ratio`."""
+    numerators, denominators, known = _known(totals, counts)
+    n = len(numerators)
     if n == 0:
         return Estimate(math.nan, math.nan, math.nan, 0)
-    success = np.array([bool(value) for value in values], float)[known]
-    p = float(success.mean())
-    found = spread((success - p) / n, *codes_of(clusters, known))
-    worth, quantile = float(n), quantile_of(float("inf"))
-    if found.variance > 0:
+    p = min(1.0, float(numerators.sum() / denominators.sum()))
+    found = spread((numerators - p * denominators) / denominators.sum(), *codes_of(clusters, known))
+    worth, quantile = float(n), quantile_of(math.inf)
+    if 0 < found.variance < math.inf:
         # Clusters can make episodes say less, and few of them leave that uncertain; nothing makes them say more.
-        worth, quantile = min(worth, p * (1 - p) / found.variance), quantile_of(found.freedom)
+        worth = min(float(denominators.sum()), p * (1 - p) / found.variance)
+        quantile = quantile_of(found.freedom)
     low, high = wilson(p, worth, quantile)
     return Estimate(100 * p, 100 * low, 100 * high, n)
 
@@ -112,7 +115,7 @@ def wilson(share: float, n: float, quantile: float = 1.959964) -> tuple[float, f
         return 0.0, 1.0
     square = quantile * quantile
     middle = (share * n + square / 2) / (n + square)
-    half = quantile / (n + square) * math.sqrt(n * share * (1 - share) + square / 4)
+    half = quantile / (n + square) * math.sqrt(max(0.0, n * share * (1 - share)) + square / 4)
     return max(0.0, middle - half), min(1.0, middle + half)
 
 
@@ -172,6 +175,13 @@ def _studentised(value: float, found: Spread) -> tuple[float, float]:
 
     error = math.sqrt(found.variance)
     return value - error * back(quantile), value - error * back(-quantile)
+
+
+def _known(totals: Sequence[float | None], counts: Sequence[float]) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Totals and counts of the episodes that have both, and which these are."""
+    known = np.array([a is not None and math.isfinite(a) and b > 0 for a, b in zip(totals, counts, strict=True)], bool)
+    numerators = np.array([math.nan if a is None else a for a in totals], float)
+    return numerators[known], np.asarray(counts, float)[known], known
 
 
 def codes_of(clusters: Sequence[Labels], known: NDArray[np.bool_]) -> list[NDArray[np.int64]]:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from polyfold.analysis._columns import shared
-from polyfold.analysis._intervals import Estimate, ratio, share
+from polyfold.analysis._intervals import Estimate, ratio, share_of
 from polyfold.analysis._results import Results
 from polyfold.analysis._tables import Cell, Figure, Table
 from polyfold.logs import StudyEpisodeRecord
@@ -28,19 +28,17 @@ class Measure:
         total: of an episode; None if unknown.
         count: what it is the total of; 0 leaves the episode out.
         digits: after the point.
+        is_share: whether it is a share [%].
     """
 
     total: Callable[[StudyEpisodeRecord], float | None]
     count: Callable[[StudyEpisodeRecord], float]
     digits: int = 1
+    is_share: bool = False
 
 
 def _one(record: StudyEpisodeRecord) -> float:
     return 1.0
-
-
-def _succeeded(record: StudyEpisodeRecord) -> float:
-    return 100.0 * record.succeeded
 
 
 def _total(record: StudyEpisodeRecord, taken: Taken) -> float | None:
@@ -53,11 +51,6 @@ def _total(record: StudyEpisodeRecord, taken: Taken) -> float | None:
 def _answered(record: StudyEpisodeRecord, taken: Taken) -> float | None:
     """The sum of what only replies report: unknown where a call brought none."""
     return None if _total(record, lambda account: account.errors) else _total(record, taken)
-
-
-def _percent(record: StudyEpisodeRecord, taken: Taken) -> float | None:
-    value = _total(record, taken)
-    return None if value is None else 100.0 * value
 
 
 def _questions(record: StudyEpisodeRecord) -> float:
@@ -74,11 +67,15 @@ def _latency(record: StudyEpisodeRecord) -> float | None:
 
 
 MEASURES: dict[str, Measure] = {
-    "success %": Measure(_succeeded, _one),
-    "valid at once %": Measure(lambda record: _percent(record, lambda account: account.valid_at_once), _questions),
-    "valid after repair %": Measure(lambda record: _percent(record, lambda account: account.valid), _questions),
-    "subgoal failures %": Measure(lambda record: 100.0 * (record.cause == "subgoal"), _one),
-    "fold-line failures %": Measure(lambda record: 100.0 * (record.cause == "fold line"), _one),
+    "success %": Measure(lambda record: float(record.succeeded), _one, is_share=True),
+    "valid at once %": Measure(
+        lambda record: _total(record, lambda account: account.valid_at_once), _questions, is_share=True
+    ),
+    "valid after repair %": Measure(
+        lambda record: _total(record, lambda account: account.valid), _questions, is_share=True
+    ),
+    "subgoal failures %": Measure(lambda record: float(record.cause == "subgoal"), _one, is_share=True),
+    "fold-line failures %": Measure(lambda record: float(record.cause == "fold line"), _one, is_share=True),
     "latency [s/call]": Measure(_latency, _replies, 2),
     "tokens in": Measure(lambda record: _answered(record, lambda account: account.prompt_tokens), _one, 0),
     "tokens out": Measure(lambda record: _answered(record, lambda account: account.completion_tokens), _one, 0),
@@ -90,10 +87,8 @@ MEASURES: dict[str, Measure] = {
 def measured(records: Sequence[StudyEpisodeRecord], measure: str) -> Estimate:
     """A measure over the episodes of one variant, with its 95 % interval for other sentences and garments."""
     found = MEASURES[measure]
-    if found.total is _succeeded:
-        return share([record.succeeded for record in records], *shared(records))
-    counts = [found.count(record) for record in records]
-    return ratio([found.total(record) for record in records], counts, *shared(records))
+    totals, counts = [found.total(record) for record in records], [found.count(record) for record in records]
+    return (share_of if found.is_share else ratio)(totals, counts, *shared(records))
 
 
 def provider_table(results: Results) -> Table:
@@ -133,8 +128,8 @@ def _note(results: Results) -> str:
     text = (
         f"{results.study.name}: mean [95 % interval for other sentences and garments]; – is unknown. Valid: share of "
         "questions (decompositions, fold lines) with a first answer, or one in the end, that could be used. Failures: "
-        "share of episodes whose first error is there. Latency: of calls that were answered, without failed tries and waits. "
-        "Tokens and cost: per episode."
+        "share of episodes whose first error is there. Latency: of calls that were answered, without failed tries and "
+        "waits. Tokens and cost: per episode."
     )
     models = {variant: results.of(variant) for variant in results.study.variants}
     text += _listed(

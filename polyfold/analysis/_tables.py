@@ -41,6 +41,11 @@ class Figure:
         return not math.isnan(self.value.mean)
 
     @property
+    def has_interval(self) -> bool:
+        """Whether there is an interval: a single episode says nothing of others."""
+        return math.isfinite(self.value.high - self.value.low)
+
+    @property
     def mean(self) -> str:
         """The mean as text; a dash if there was nothing to measure."""
         return f"{self.value.mean:{'+' if self.signed else ''}.{self.digits}f}" if self.is_known else "–"
@@ -48,18 +53,14 @@ class Figure:
     @property
     def ends(self) -> tuple[str, str]:
         """The ends of the interval as text."""
-        return _bound(self.value.low, self.digits), _bound(self.value.high, self.digits)
+        return f"{self.value.low:.{self.digits}f}", f"{self.value.high:.{self.digits}f}"
 
     def __str__(self) -> str:
-        interval = f" [{self.ends[0]}, {self.ends[1]}]" if self.is_known else ""
+        interval = f" [{self.ends[0]}, {self.ends[1]}]" if self.has_interval else ""
         return f"{self.mean}{interval}{CERTAIN if self.certain else ''}" + (f" {self.note}" if self.note else "")
 
 
 Cell = str | Figure
-
-
-def _bound(end: float, digits: int) -> str:
-    return f"{end:.{digits}f}" if math.isfinite(end) else ("−∞" if end < 0 else "∞")
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from polyfold.analysis import Results
@@ -34,7 +35,7 @@ def bars(results: Results, column: str = "success %") -> Any:
         found = [chosen.over(results.of(variant, kind)) for kind in kinds]
         at = [place + (number - (len(variants) - 1) / 2) * width for place in range(len(kinds))]
         means = [value.mean for value in found]
-        spans = [[v.mean - v.low for v in found], [v.high - v.mean for v in found]]
+        spans = [[error_bar(v.mean - v.low) for v in found], [error_bar(v.high - v.mean) for v in found]]
         colour = PALETTE[number % len(PALETTE)]
         axes.bar(at, means, 0.92 * width, yerr=spans, label=variant, color=colour, capsize=2, error_kw={"lw": 1})
     axes.set_xticks(range(len(kinds)), kinds)
@@ -42,3 +43,8 @@ def bars(results: Results, column: str = "success %") -> Any:
     axes.spines[["top", "right"]].set_visible(False)
     figure.legend(loc="outside upper center", ncols=min(len(variants), 3), frameon=False, fontsize=8)
     return figure
+
+
+def error_bar(length: float) -> float:
+    """Half an error bar; none where a single episode says nothing of others."""
+    return max(0.0, length) if math.isfinite(length) else 0.0

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from polyfold.analysis import Estimate, Results
-from polyfold.viz._plots import PALETTE
+from polyfold.viz._plots import PALETTE, error_bar
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,7 +54,7 @@ def _draw(axes: Axes, results: Results, models: Sequence[str], measure: str, pla
         at = row + (place - (of - 1) / 2) * height
         known = found.n > 0
         if known:
-            span = [[max(0.0, found.mean - found.low)], [max(0.0, found.high - found.mean)]]
+            span = [[error_bar(found.mean - found.low)], [error_bar(found.high - found.mean)]]
             axes.barh(at, found.mean, 0.9 * height, xerr=span, color=PALETTE[place], capsize=2, error_kw={"lw": 1})
         text = _value(records, measure, found) if known else "–"
         axes.annotate(

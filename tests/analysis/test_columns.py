@@ -144,7 +144,7 @@ def test_runs_of_schema_version_1_open_and_are_not_resumed(tmp_path):
     (tmp_path / "episodes.jsonl").write_text(json.dumps(line) + "\n")
     results = polyfold.open(tmp_path)
     assert results.records[0].folds == 1
-    assert "1.5 [1.5, 1.5] | 0.970 [0.970, 0.970] | 3.0 [3.0, 3.0] | 100.0" in polyfold.table(results).markdown()
+    assert "| 1.5 | 0.970 | 3.0 | 100.0 [20.7, 100.0]" in polyfold.table(results).markdown()
     page = report_html(tmp_path)
     assert "1 episode" in page
     assert "2.0.0" in page, "versions were all that such a run kept of what it depends on"

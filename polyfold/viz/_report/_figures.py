@@ -50,7 +50,7 @@ def _figure(column: Column, value: Estimate) -> dict[str, str]:
     return {
         "label": label,
         "mean": figure.mean,
-        "interval": " to ".join(figure.ends) if figure.is_known else "",
+        "interval": " to ".join(figure.ends) if figure.has_interval else "",
         "unit": "%" if column.is_success else unit.rstrip("]"),
     }
 

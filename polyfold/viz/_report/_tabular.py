@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from polyfold.analysis import Results, Table, compare
-from polyfold.analysis._tables import Cell
+from polyfold.analysis._tables import CERTAIN, Cell
 
 
 def comparison_html(results: Results, first: str, others: Sequence[str], columns: Sequence[str]) -> Markup:
@@ -58,11 +58,12 @@ def _value(cell: Cell, difference: bool) -> Markup:
         return Markup("<td>{}</td>").format(cell)
     unsure = difference and not cell.certain
     low, high = cell.ends
-    return Markup('<td{}>{} <span class="interval">[{}, {}]</span>{}</td>').format(
+    interval = Markup(' <span class="interval">[{}, {}]</span>').format(_signed(low), _signed(high))
+    return Markup("<td{}>{}{}{}{}</td>").format(
         Markup(' class="unsure"') if unsure else "",
         _signed(cell.mean),
-        _signed(low),
-        _signed(high),
+        interval if cell.has_interval else "",
+        CERTAIN if cell.certain else "",
         f" {cell.note}" if cell.note else "",
     )
 

@@ -52,9 +52,9 @@ def test_episodes_that_ended_early_never_succeed():
 
 
 def test_wilson_interval_of_known_counts():
-    assert wilson(8, 10) == pytest.approx((0.4902, 0.9433), abs=1e-4)
-    assert wilson(0, 20)[0] == 0.0
-    assert wilson(0, 20)[1] == pytest.approx(0.1611, abs=1e-4)
+    assert wilson(0.8, 10) == pytest.approx((0.4902, 0.9433), abs=1e-4)
+    assert wilson(0.0, 20)[0] == 0.0
+    assert wilson(0.0, 20)[1] == pytest.approx(0.1611, abs=1e-4)
 
 
 @given(st.lists(st.integers(0, 10), min_size=1, max_size=9))
