@@ -22,13 +22,17 @@ FEWEST, MOST_TRIED, FLIPS = 6, 12, 4999
 
 def difference(ours: Sequence[float | None], theirs: Sequence[float | None], *clusters: Labels) -> Estimate:
     """Mean of ours − theirs over episodes that both have a value for, in the same order; see :func:`mean`."""
-    gaps = np.array([math.nan if None in pair else pair[0] - pair[1] for pair in zip(ours, theirs, strict=True)], float)
+    gaps = _numbers(ours) - _numbers(theirs)
     found = mean(gaps.tolist(), *clusters)
     if found.n == 0:
         return found
     known = np.isfinite(gaps)
     p = _flipped(gaps[known], codes_of(clusters, known))
     return Estimate(found.mean, found.low, found.high, found.n, p)
+
+
+def _numbers(values: Sequence[float | None]) -> Floats:
+    return np.array([math.nan if value is None else value for value in values], float)
 
 
 def share_difference(ours: Sequence[bool | None], theirs: Sequence[bool | None], *clusters: Labels) -> Estimate:
@@ -87,6 +91,6 @@ def _flipped(gaps: Floats, codes: Sequence[NDArray[np.int64]]) -> float:
 
 
 def _sums(gaps: Floats, codes: Sequence[NDArray[np.int64]]) -> Floats:
-    kinds = sorted((np.bincount(code, gaps) for code in codes), key=len)
+    kinds: list[Floats] = sorted((np.bincount(code, gaps).astype(float) for code in codes), key=len)
     enough = [sums for sums in kinds if len(sums) >= FEWEST]
-    return enough[0] if enough else (kinds[-1] if kinds else gaps)
+    return [*enough[:1], *kinds[-1:], gaps][0]

@@ -73,8 +73,8 @@ def test_every_variant_kind_and_section_is_there(full_run):
     assert {"success", "comparison", "thresholds", "failures", "time", "gallery", "made"} <= ids
     assert {found["href"][1:] for found in page.all("a")} <= ids, "links lead somewhere on the page"
     assert len(page.all("svg", **{"class": "panel"})) == 3, "square, tshirt and all"
-    assert "100.0 [100.0, 100.0]" in page.text, "intervals stand beside means"
-    assert "−100.0 [−100.0, −100.0]" in page.text, "so do paired differences"
+    assert "100.0 [51.0, 100.0]" in page.text, "intervals stand beside means"
+    assert "−100.0 [−100.0, −7.0]" in page.text, "so do paired differences"
 
 
 def test_nothing_is_fetched_and_only_our_own_script_and_style_run(full_run):
