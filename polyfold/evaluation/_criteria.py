@@ -7,6 +7,7 @@ its own first.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from polyfold import plugins
@@ -34,10 +35,17 @@ def criteria(names: Sequence[str]) -> dict[str, tuple[Threshold, ...]]:
 
 
 def succeeded(values: Mapping[str, float], thresholds: Sequence[Threshold]) -> bool:
-    """Whether metric values meet every bound."""
-    return all(threshold.holds(values[threshold.metric]) for threshold in thresholds)
+    """Whether metric values meet every bound; where there is nothing to measure at all, nothing succeeded."""
+    return _measured(values, thresholds) and all(threshold.holds(values[threshold.metric]) for threshold in thresholds)
 
 
 def needed_scale(values: Mapping[str, float], thresholds: Sequence[Threshold]) -> float:
-    """The factor on what the bounds allow at which metric values just meet them all: 0 is perfect."""
+    """The factor on what the bounds allow at which metric values just meet them all: 0 is perfect, infinite never."""
+    if not _measured(values, thresholds):
+        return math.inf
     return max(threshold.share(values[threshold.metric]) for threshold in thresholds)
+
+
+def _measured(values: Mapping[str, float], thresholds: Sequence[Threshold]) -> bool:
+    """Whether there was anything to measure: the moved part, say, is not where the reference moves nothing."""
+    return not all(math.isnan(values[threshold.metric]) for threshold in thresholds)

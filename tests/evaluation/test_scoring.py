@@ -1,10 +1,12 @@
+import math
+
 import numpy as np
 import pytest
 
 import polyfold
 from polyfold import plugins
 from polyfold.api import attempt
-from polyfold.evaluation._criteria import criteria, succeeded
+from polyfold.evaluation._criteria import criteria, needed_scale, succeeded
 from polyfold.types import Outcome
 
 TASKS = ("square-triangle-top_left", "square-corner-bottom_right")
@@ -63,3 +65,12 @@ def test_aligned_overlap_and_moved_part_forgive_a_turn_too():
     aligned = scores(result, reference, **{"miou": {"align": True}, "moved-part": {"align": True}})
     assert aligned["miou"] > 0.98 > plain["miou"]
     assert aligned["moved-part"] < 1e-6 < 50 < plain["moved-part"]
+
+
+def test_where_nothing_was_measured_nothing_succeeded():
+    bounds = criteria(["strict"])["strict"]
+    nothing = {threshold.metric: math.nan for threshold in bounds}
+    assert not succeeded(nothing, bounds)
+    assert needed_scale(nothing, bounds) == math.inf
+    still = {"mppe": 1.0, "miou": 0.99, "moved-part": math.nan}
+    assert succeeded(still, bounds), "no part was to be moved, and none was"
