@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.analysis import Estimate, difference, mean, share, share_difference
+from polyfold.analysis import Estimate, mean, share
+from polyfold.analysis._differences import difference, share_difference
 
 Floats = NDArray[np.float64]
 Clusters = Sequence[Sequence[int]]

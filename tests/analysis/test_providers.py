@@ -7,7 +7,8 @@ from polyfold_rules.rules import RulesLLM
 
 import polyfold
 from experiments.benchmarks.language.loopback import Sent, answering, completion, serve
-from polyfold.analysis import Results, open_results, provider_table, share, shared
+from polyfold.analysis import Results, open_results, provider_table, share
+from polyfold.analysis._columns import shared
 from polyfold.analysis._providers import MEASURES, measured
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError

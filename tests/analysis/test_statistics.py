@@ -8,7 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from experiments.benchmarks.coverage import DRAWS, Setting, coverage
-from polyfold.analysis import difference, holm, mean, ratio, share, share_difference, wilson
+from polyfold.analysis import mean, share
+from polyfold.analysis._differences import difference, holm, share_difference
+from polyfold.analysis._intervals import ratio, wilson
 
 SETTINGS = [
     Setting(data, n, clustered)

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from polyfold.analysis import share, shared
+from polyfold.analysis import share
+from polyfold.analysis._columns import shared
 from polyfold.evaluation._criteria import needed_scale
 from polyfold.logs import StudyEpisodeRecord
 from polyfold.types import Threshold

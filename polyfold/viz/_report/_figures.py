@@ -8,8 +8,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from polyfold.analysis import Estimate, Table, share, shared
-from polyfold.analysis._columns import Column, columns_of
+from polyfold.analysis import Estimate, Table, share
+from polyfold.analysis._columns import Column, columns_of, shared
 from polyfold.analysis._tables import Figure
 from polyfold.evaluation._attribution import CAUSES
 from polyfold.logs import StudyEpisodeRecord

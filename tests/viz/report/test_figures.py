@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from made_up_runs import BAD, GOOD, picture, record
 
 import polyfold.viz._report
-from polyfold.analysis import Estimate, wilson
+from polyfold.analysis import Estimate
+from polyfold.analysis._intervals import wilson
 from polyfold.evaluation._criteria import criteria, succeeded
 from polyfold.viz._report._charts import Part, bar, curve_panel, dot
 from polyfold.viz._report._curves import SCALES, success_curve
