@@ -1,7 +1,7 @@
 """How often 95 % intervals hold: every kind of interval of our tables, on data whose truth is known.
 
 For each setting many data sets are drawn; counted is how often the interval holds the true mean. Before stands what
-tables had until 0.2: percentiles of a bootstrap that draws episodes.
+tables had in 0.1: percentiles of a bootstrap that draws episodes.
 """
 
 from __future__ import annotations
@@ -68,11 +68,9 @@ def coverage(setting: Setting, draws: int = DRAWS, seed: int = 0, before: bool =
     return held / draws
 
 
-def _clusters(n: int) -> tuple[list[int], list[int]]:
-    sentences, garments = SIZES[n]
-    return np.repeat(np.arange(sentences), n // sentences).tolist(), np.tile(
-        np.arange(garments), n // garments
-    ).tolist()
+def _clusters(n: int) -> Clusters:
+    sentences, garments = np.divmod(np.arange(n), SIZES[n][1])
+    return sentences.tolist(), garments.tolist()
 
 
 def _drawn(setting: Setting, clusters: Clusters, rng: np.random.Generator) -> tuple[list[NDArray[Any]], float]:

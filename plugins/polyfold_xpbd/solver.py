@@ -235,7 +235,7 @@ class Solver:
         # A fresh list and no loads make a stage depend on the saved state alone, so that restore() repeats exactly.
         self._clock[:2] = 0, -1
         if self._watch is not None:
-            self._watch.counts[:4] = 0
+            self._watch.counts[:] = 0
         self._pairs[3][: self._clock[3]], self._table_load[:], self._sharp[:] = 0.0, 0.0, False
         chunk = substeps if on_frame is None else max(1, round(interval / self.dt))
         done = 0

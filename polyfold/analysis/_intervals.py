@@ -22,7 +22,8 @@ Floats = NDArray[np.float64]
 Labels = Sequence[Hashable]
 """What each episode shares with others: episodes with equal labels form a cluster."""
 
-LEVEL = 0.95
+LEVEL, NORMAL = 0.95, 1.959964
+"""Of the intervals, and the two-sided quantile of the normal distribution for it."""
 SKEWEST = 1.5
 """Skewness of a mean beyond which few clusters say nothing certain of it."""
 
@@ -81,10 +82,11 @@ def ratio(totals: Sequence[float | None], counts: Sequence[float], *clusters: La
     numerators, denominators, known = _known(totals, counts)
     if len(numerators) == 0:
         return Estimate(math.nan, math.nan, math.nan, 0)
-    value = numerators.sum() / denominators.sum()
-    found = spread((numerators - value * denominators) / denominators.sum(), *codes_of(clusters, known))
-    low, high = _studentised(float(value), found)
-    return Estimate(float(value), low, high, len(numerators))
+    count = _total(denominators)
+    value = _total(numerators) / count
+    found = spread((numerators - value * denominators) / count, *codes_of(clusters, known))
+    low, high = _studentised(value, found)
+    return Estimate(value, low, high, len(numerators))
 
 
 def share(values: Sequence[bool | None], *clusters: Labels) -> Estimate:
@@ -98,24 +100,25 @@ def share_of(totals: Sequence[float | None], counts: Sequence[float], *clusters:
     n = len(numerators)
     if n == 0:
         return Estimate(math.nan, math.nan, math.nan, 0)
-    p = min(1.0, float(numerators.sum() / denominators.sum()))
-    found = spread((numerators - p * denominators) / denominators.sum(), *codes_of(clusters, known))
+    count = _total(denominators)
+    p = min(1.0, _total(numerators) / count)
+    found = spread((numerators - p * denominators) / count, *codes_of(clusters, known))
     worth, quantile = float(n), quantile_of(math.inf)
     if 0 < found.variance < math.inf:
         # Clusters can make episodes say less, and few of them leave that uncertain; nothing makes them say more.
-        worth = min(float(denominators.sum()), p * (1 - p) / found.variance)
+        worth = min(count, p * (1 - p) / found.variance)
         quantile = quantile_of(found.freedom)
     low, high = wilson(p, worth, quantile)
     return Estimate(100 * p, 100 * low, 100 * high, n)
 
 
-def wilson(share: float, n: float, quantile: float = 1.959964) -> tuple[float, float]:
-    """Wilson's interval of a share, 0 to 1, seen in ``n`` (maybe effective) independent episodes."""
+def wilson(p: float, n: float, quantile: float = NORMAL) -> tuple[float, float]:
+    """Wilson's interval of a share ``p``, 0 to 1, seen in ``n`` (maybe effective) independent episodes."""
     if n == 0:
         return 0.0, 1.0
     square = quantile * quantile
-    middle = (share * n + square / 2) / (n + square)
-    half = quantile / (n + square) * math.sqrt(max(0.0, n * share * (1 - share)) + square / 4)
+    middle = (p * n + square / 2) / (n + square)
+    half = quantile / (n + square) * math.sqrt(max(0.0, n * p * (1 - p)) + square / 4)
     return max(0.0, middle - half), min(1.0, middle + half)
 
 
@@ -145,7 +148,7 @@ def quantile_of(freedom: float) -> float:
     """Student's two-sided 95 % quantile."""
     from scipy.special import stdtrit
 
-    return 1.959964 if math.isinf(freedom) else float(stdtrit(max(freedom, 1.0), (1 + LEVEL) / 2))
+    return NORMAL if math.isinf(freedom) else float(stdtrit(max(freedom, 1.0), (1 + LEVEL) / 2))
 
 
 def _third(found: Spread) -> float:
@@ -153,12 +156,13 @@ def _third(found: Spread) -> float:
 
 
 def _of_clusters(deviations: Floats, code: NDArray[np.int64]) -> Spread:
-    sums = np.bincount(code, deviations)
+    order = np.lexsort((deviations, code))
+    sums = np.bincount(code[order], deviations[order]).astype(np.float64)
     count = len(sums)
     if count < 2:
         return Spread(math.inf, 1.0, 0.0)
-    variance = float((sums**2).sum()) * count / (count - 1)
-    third = float((sums**3).sum()) * count**2 / ((count - 1) * (count - 2)) if count > 2 else 0.0
+    variance = _total(sums**2) * count / (count - 1)
+    third = _total(sums**3) * count**2 / ((count - 1) * (count - 2)) if count > 2 else 0.0
     return Spread(variance, count - 1.0, third / variance**1.5 if variance > 0 else 0.0)
 
 
@@ -169,12 +173,15 @@ def _studentised(value: float, found: Spread) -> tuple[float, float]:
     quantile, skew = quantile_of(found.freedom), min(SKEWEST, max(-SKEWEST, found.skewness))
 
     def back(y: float) -> float:
-        return (
-            y if abs(skew) < 1e-6 else 3 / skew * (math.copysign(abs(z := 1 + skew * (y - skew / 6)) ** (1 / 3), z) - 1)
-        )
+        return y if abs(skew) < 1e-6 else 3 / skew * (math.cbrt(1 + skew * (y - skew / 6)) - 1)
 
     error = math.sqrt(found.variance)
     return value - error * back(quantile), value - error * back(-quantile)
+
+
+def _total(values: Floats) -> float:
+    """The sum, to the last bit the same in whatever order episodes ran."""
+    return float(np.sort(values).sum())
 
 
 def _known(totals: Sequence[float | None], counts: Sequence[float]) -> tuple[Floats, Floats, NDArray[np.bool_]]:

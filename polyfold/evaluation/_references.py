@@ -94,7 +94,9 @@ def _reference_simulator(simulator: ComponentSpec) -> ComponentSpec:
     if not isinstance(cls, HasReferenceConfig):
         return simulator
     name, params = cls.reference_config(config)
-    return ComponentSpec(name=name, params=dict(params))
+    found = ComponentSpec(name=name, params=dict(params))
+    # What is inside another simulator may have a reference of its own.
+    return found if name == simulator.name else _reference_simulator(found)
 
 
 def _key(task: Task, garment: Garment, seed: int, experiment: Experiment) -> str:

@@ -28,8 +28,9 @@ def test_intervals_hold_as_often_as_they_say(setting):
 
 def test_the_order_in_which_episodes_ran_changes_no_interval():
     values = list(np.random.default_rng(3).exponential(size=70))
-    first, second = mean(values), mean(sorted(values))
-    assert (first.low, first.high) == pytest.approx((second.low, second.high), rel=1e-12)
+    assert mean(values) == mean(values[::-1]) == mean(sorted(values))
+    garments = [k % 7 for k in range(70)]
+    assert mean(values, garments) == mean(values[::-1], garments[::-1])
 
 
 def test_episodes_of_few_garments_say_less_than_as_many_of_many():

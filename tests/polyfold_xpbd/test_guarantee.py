@@ -60,13 +60,13 @@ def test_a_state_made_without_the_guarantee_is_refused(guaranteed):
 
 
 def test_no_class_of_ours_is_in_numba_s_cache(guaranteed):
-    assert guaranteed[0] == 0.0
-    assert not [signature for signature in advance.nopython_signatures if "polyfold" in repr(signature)]
-    assert not [signature for signature in advance.nopython_signatures if "Watch" in repr(signature)]
+    signatures = " ".join(map(repr, advance.nopython_signatures))
+    assert "Tuple" in signatures, "the guarantee's arrays are there"
+    assert "Watch" not in signatures
 
 
 def held_tshirt(guaranteed):
-    """A t-shirt with the middle of both panels held; the solver, what is held, and which of it is above."""
+    """A simulator with a t-shirt held by its middle, the garment, what is held, and which of it is above."""
     simulator = plugins.create("simulators", "xpbd", {"guaranteed": guaranteed})
     garment = plugins.generate_garment("tshirt", SEED, 0.025)
     simulator.reset(garment, SEED)

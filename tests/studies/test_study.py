@@ -176,7 +176,9 @@ def test_references_have_no_faults():
     task = suite("polyfold70").task("square-corner-top_left")
     cloth = polyfold.garment("square", seed=2000, edge_length=0.03)
     plain = reference_for(task, cloth, 2000, ComponentSpec(name="xpbd"))
-    faulty = reference_for(task, cloth, 2000, ComponentSpec(name="faulty", params={"miss": 1.0}))
+    faulty = reference_for(
+        task, cloth, 2000, ComponentSpec(name="faulty", params={"miss": 1.0, "inner_params": {"order": 3}})
+    )
     assert (plain.outcome.end.positions == faulty.outcome.end.positions).all()
     assert np.abs(plain.outcome.end.positions - plain.outcome.start.positions).max() > 0.05
 

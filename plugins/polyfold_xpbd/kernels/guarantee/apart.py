@@ -139,7 +139,7 @@ def _sweep(x, start, first, last, upper, watch, after, apart, floor, mobility, s
 
 @compiled
 def _move_zones(x, start, floor, mobility, zones, sums, moved, sweep):
-    """Let what is in a zone move as one; how many particles are in zones.
+    """Let what is in a zone move as one.
 
     Args:
         x, start: positions [m], shape (N, 3), now, which are changed, and at the start of the substep.
@@ -163,34 +163,30 @@ def _move_zones(x, start, floor, mobility, zones, sums, moved, sweep):
             for axis in range(3):
                 sums[root, axis] += weight * (x[i, axis] - start[i, axis])
             sums[root, 3] += -one if held else weight
-    count = 0
     for i in range(x.shape[0]):
         root = _root(zones, i)
         if sums[root, 4] > one:
-            count += 1
             for axis in range(3):
                 way = sums[root, axis] / abs(sums[root, 3])
                 there = start[i, axis] + (way if axis < 2 else max(way, sums[root, 5]))
                 if x[i, axis] != there:
                     x[i, axis], moved[i] = there, sweep
-    return count
 
 
 @compiled
 def _part_all(x, start, after, apart, floor, mobility, watch):
-    """Part all that is listed; how many particles moved in zones."""
+    """Part all that is listed."""
     counts, last = watch.counts, watch.bodies.shape[0]
     watch.moved[:] = 0
     for i in range(x.shape[0]):
         watch.zones[i] = i
-    sweep, met, count = 0, 1, 0
+    sweep, met = 0, 1
     while met > 0:
         sweep += 1
         met = _sweep(x, start, 0, counts[0], 1, watch, after, apart, floor, mobility, sweep)
         met += _sweep(x, start, last - counts[1], last, 2, watch, after, apart, floor, mobility, sweep)
         if met > 0 and sweep > SWEEPS:
-            count = _move_zones(x, start, floor, mobility, watch.zones, watch.sums, watch.moved, sweep)
-    return count
+            _move_zones(x, start, floor, mobility, watch.zones, watch.sums, watch.moved, sweep)
 
 
 @compiled
@@ -246,13 +242,11 @@ def keep_apart(x, start, dt, thickness, edge_length, corners, edges, mobility, w
                 break
             watch.off[:], old = np.float32(0.0), False
         after = np.float32(counts[2] + 1) * dt
-        zoned = _part_all(x, start, after, apart, floor, mobility, watch)
+        _part_all(x, start, after, apart, floor, mobility, watch)
         if _look(x, after, watch) == 0:
             counts[2] += 1
-            counts[4] += zoned
             return True
     x[:, :] = start
-    counts[4] += x.shape[0]
     listed = list_close(x, start, dt, edge_length, corners, edges, watch)
     counts[2], counts[3] = 0, 0
     return listed

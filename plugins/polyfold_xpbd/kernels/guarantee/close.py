@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from polyfold_xpbd.kernels.guarantee.distance import between_edges, from_triangle
 from polyfold_xpbd.kernels.near import ROOM, gather, sort_by_cell, swept_boxes
+from polyfold_xpbd.kernels.pairs import CELL
 from polyfold_xpbd.kernels.vectors import compiled
 
 AHEAD, STRAY, WIDER = 8, 0.0005, 3.0
@@ -21,8 +22,6 @@ What does may then leave it so many times as far as it did, and what it could me
 """
 MOST_STRAYS = 32
 """If more leave their path at once, all is listed anew."""
-CELL = 0.5
-"""Side of a cell that boxes are sorted into, in edge lengths."""
 PAIRS_PER_PARTICLE = 400
 """Room in the list. Where there is none, it looks less far ahead."""
 
@@ -35,7 +34,7 @@ class Watch(NamedTuple):
         ways: how far apart these are [m], and how fast that changes at most [m/s], when listed, shape (room, 2).
         normals: unit vectors that part them; zero if not known, shape (room, 3).
         counts: pairs of a vertex and a triangle, at the front, and of edges, at the back; substeps since all was
-            listed, and for how many it holds; particles that ever moved in impact zones; int64, shape (5,).
+            listed, and for how many it holds; int64, shape (4,).
         listed, foreseen: where particles were when all was listed [m], and how fast they were thought to go on [m/s],
             shape (N, 3).
         boxes: what each particle may reach while the list holds [m], low corner, then high corner, shape (N, 6).
@@ -64,7 +63,7 @@ def watch_memory(count: int) -> Watch:
         np.zeros((room, 4), np.int32),
         np.zeros((room, 2), np.float32),
         np.zeros((room, 3), np.float32),
-        np.zeros(5, np.int64),
+        np.zeros(4, np.int64),
         np.zeros((count, 3), np.float32),
         np.zeros((count, 3), np.float32),
         np.zeros((count, 6), np.float32),
@@ -84,6 +83,15 @@ def _speed_2(v, i, j):
 
 
 @compiled
+def _enter(bodies, ways, normals, p, a, b, c, d, distance, speed):
+    """Make pair p these four particles, ``distance`` [m] apart, which changes by at most ``speed`` [m/s]; 1."""
+    bodies[p, 0], bodies[p, 1], bodies[p, 2], bodies[p, 3] = a, b, c, d
+    ways[p, 0], ways[p, 1] = distance, speed
+    normals[p, 0], normals[p, 1], normals[p, 2] = np.float32(0.0), np.float32(0.0), np.float32(0.0)
+    return 1
+
+
+@compiled
 def _enter_vertex(x, v, allowed, horizon, i, corners, t, bodies, ways, normals, p):
     """Make pair p a vertex and a triangle, unless these can't meet within ``horizon`` [s]; how many were entered."""
     a, b, c = corners[t, 0], corners[t, 1], corners[t, 2]
@@ -95,10 +103,7 @@ def _enter_vertex(x, v, allowed, horizon, i, corners, t, bodies, ways, normals, 
     distance = np.float32(np.sqrt(dx * dx + dy * dy + dz * dz))
     if distance > off + horizon * speed:
         return 0
-    bodies[p, 0], bodies[p, 1], bodies[p, 2], bodies[p, 3] = i, a, b, c
-    ways[p, 0], ways[p, 1] = distance, speed
-    normals[p, 0], normals[p, 1], normals[p, 2] = np.float32(0.0), np.float32(0.0), np.float32(0.0)
-    return 1
+    return _enter(bodies, ways, normals, p, i, a, b, c, distance, speed)
 
 
 @compiled
@@ -113,10 +118,7 @@ def _enter_edges(x, v, allowed, horizon, edges, e, f, bodies, ways, normals, p):
     distance = np.float32(np.sqrt(dx * dx + dy * dy + dz * dz))
     if distance > off + horizon * speed:
         return 0
-    bodies[p, 0], bodies[p, 1], bodies[p, 2], bodies[p, 3] = a, b, c, d
-    ways[p, 0], ways[p, 1] = distance, speed
-    normals[p, 0], normals[p, 1], normals[p, 2] = np.float32(0.0), np.float32(0.0), np.float32(0.0)
-    return 1
+    return _enter(bodies, ways, normals, p, a, b, c, d, distance, speed)
 
 
 @compiled
