@@ -36,9 +36,12 @@ def register_segmenters(register):
 
 @hookimpl
 def register_agents(register):
-    """Register the oracle, and the two baselines that every result is compared with."""
+    """Register the oracle, the policies' ablation, and the two baselines that every result is compared with."""
     register(
-        "oracle", "polyfold_standard.agents.oracle:Oracle", "the task's true fold lines, picks by policy (privileged)"
+        "oracle", "polyfold_standard.agents.oracle:Oracle", "true fold lines, tries picks until near the ideal (privileged)"
+    )
+    register(
+        "fold-lines", "polyfold_standard.agents.fold_lines:FoldLines", "true fold lines, picks by policy (privileged)"
     )
     register("noop", "polyfold_standard.agents.baselines:Noop", "does nothing")
     register(
@@ -54,6 +57,7 @@ def register_metrics(register):
     register("mppe", "polyfold_standard.metrics:MPPE", "mean particle position error [mm]")
     register("miou", "polyfold_standard.metrics:IoU", "IoU of the silhouettes")
     register("moved-part", "polyfold_standard.metrics:MovedPartError", "mean error of what the reference moved [mm]")
+    register("quality", "polyfold_standard.quality:Quality", "edges, area, flatness and creases, 0 to 100")
 
 
 @hookimpl

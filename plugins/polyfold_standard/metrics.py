@@ -1,4 +1,4 @@
-"""Metrics of an outcome against references made by the oracle (paper, Sec. V-C)."""
+"""Metrics of an outcome against references (paper, Sec. V-C)."""
 
 from __future__ import annotations
 
@@ -7,20 +7,13 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from polyfold.geometry import iou, rotate, turn_onto
+from polyfold.geometry import iou
 from polyfold.types import Outcome
+from polyfold_standard.alignment import Alignable, laid_onto
 
 Floats = NDArray[np.float64]
-
-
-class _Alignable(BaseModel):
-    """Parameters that all metrics share."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    align: bool = Field(default=False, description="move and turn the result rigidly onto the reference first")
 
 
 class MPPE:
@@ -31,7 +24,7 @@ class MPPE:
     unit: ClassVar[str] = "mm"
     higher_is_better: ClassVar[bool] = False
 
-    class Config(_Alignable):
+    class Config(Alignable):
         """Parameters."""
 
     def __init__(self, config: Config | None = None) -> None:
@@ -50,7 +43,7 @@ class IoU:
     unit: ClassVar[str] = ""
     higher_is_better: ClassVar[bool] = True
 
-    class Config(_Alignable):
+    class Config(Alignable):
         """Parameters."""
 
     def __init__(self, config: Config | None = None) -> None:
@@ -72,7 +65,7 @@ class MovedPartError:
     unit: ClassVar[str] = "mm"
     higher_is_better: ClassVar[bool] = False
 
-    class Config(_Alignable):
+    class Config(Alignable):
         """Parameters."""
 
         moved_mm: float = Field(
@@ -97,7 +90,7 @@ def _errors(result: Outcome, reference: Outcome, align: bool) -> Floats:
     """Distance [mm] of every particle from where the reference has it, shape (N,)."""
     positions, wanted = result.end.positions, reference.end.positions
     if align:
-        positions = np.column_stack([_laid_onto(positions, wanted, positions[:, :2]), positions[:, 2]])
+        positions = np.column_stack([laid_onto(positions, wanted, positions[:, :2]), positions[:, 2]])
     return 1000.0 * np.linalg.norm(positions - wanted, axis=1)
 
 
@@ -108,13 +101,7 @@ def _aligned_mask(result: Outcome, reference: Outcome) -> NDArray[np.bool_]:
     camera = result.end.camera
     corners = np.array([[0.0, 0.0], [camera.width, 0.0], [0.0, camera.height]])
     on_table = camera.to_world(corners)[:, :2]
-    moved = camera.to_pixels(_laid_onto(result.end.positions, reference.end.positions, on_table))
+    moved = camera.to_pixels(laid_onto(result.end.positions, reference.end.positions, on_table))
     matrix = cv2.getAffineTransform(corners.astype(np.float32), moved.astype(np.float32))
     size = (camera.width, camera.height)
     return cv2.warpAffine(result.mask.astype(np.uint8), matrix, size, flags=cv2.INTER_NEAREST).astype(bool)
-
-
-def _laid_onto(particles: Floats, wanted: Floats, points: Floats) -> Floats:
-    """Points on the table [m], shape (M, 2), after the rigid motion of particles, shape (N, 3), onto ``wanted``."""
-    centre, goal = particles[:, :2].mean(axis=0), wanted[:, :2].mean(axis=0)
-    return rotate(points, turn_onto(particles[:, :2], wanted[:, :2]), centre) + goal - centre

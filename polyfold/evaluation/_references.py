@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,7 @@ import numpy as np
 from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment
 from polyfold.evaluation._judging import final_mask
-from polyfold.garments import Garment
+from polyfold.garments import Garment, Mesh
 from polyfold.geometry import Camera
 from polyfold.logs._dependencies import fingerprint
 from polyfold.logs._host import processor
@@ -63,13 +63,13 @@ def reference_for(task: Task, garment: Garment, seed: int, simulator: ComponentS
     experiment = Experiment.of(agent="oracle", simulator=_reference_simulator(simulator))
     path = cache_folder() / "references" / f"{_key(task, garment, seed, experiment)}.npz"
     if path.exists():
-        return _read(path)
+        return _read(path, garment.mesh)
     episode = run_episode(experiment, garment, "", seed, task=task, role="reference")
     if episode.error is not None:
         raise episode.error
     mask = final_mask(episode)
-    after = tuple(step.after for step in episode.steps)
-    found = Reference(Outcome(episode.initial_state, episode.final_state, mask), after)
+    after = tuple(step.after for step in episode.final_attempts())
+    found = Reference(Outcome(episode.initial_state, episode.final_state, mask, garment.mesh), after)
     _write(path, found)
     return found
 
@@ -83,9 +83,8 @@ def ideal_reference(task: Task, garment: Garment, flat: SimState) -> Reference:
         flat: the state before the first fold.
     """
     lines = fold_lines(task, flat.keypoint_pixels())
-    folded = fold_step_by_step(flat, garment, lines)
-    after = tuple(replace(flat, positions=ideal.positions) for ideal in folded)
-    return Reference(Outcome(flat, after[-1], folded[-1].mask), after)
+    folded = [ideal.outcome(flat, garment.mesh) for ideal in fold_step_by_step(flat, garment, lines)]
+    return Reference(folded[-1], tuple(outcome.end for outcome in folded))
 
 
 def _reference_simulator(simulator: ComponentSpec) -> ComponentSpec:
@@ -130,7 +129,7 @@ def _write(path: Path, reference: Reference) -> None:
     scratch.replace(path)
 
 
-def _read(path: Path) -> Reference:
+def _read(path: Path, mesh: Mesh) -> Reference:
     with np.load(path, allow_pickle=False) as stored:
         width, height, focal, elevation = stored["camera"]
         camera = Camera(int(width), int(height), float(focal), float(elevation))
@@ -138,4 +137,4 @@ def _read(path: Path) -> Reference:
         states = [SimState(positions, np.zeros_like(positions), keypoints, camera) for positions in stored["positions"]]
         pixels = camera.width * camera.height
         mask = np.unpackbits(stored["mask"], count=pixels).astype(bool).reshape(camera.height, camera.width)
-    return Reference(Outcome(states[0], states[-1], mask), tuple(states[1:]))
+    return Reference(Outcome(states[0], states[-1], mask, mesh), tuple(states[1:]))

@@ -244,7 +244,9 @@ class Goal:
         conversation: the episode's language model.
         subgoal_texts, subgoal_images, goal_image: accurate guidance, for agents that need it; with ``final`` guidance
             the subgoals are the goal alone.
+        fold_count: how many folds the task takes; None where that is open.
         fold_lines: the ideal fold lines [px]; privileged.
+        ideals: the ideal after each of them, beside the flat garment; privileged.
         state: function that returns the true state; privileged.
         simulator: the simulator itself, to try folds in; privileged.
     """
@@ -257,7 +259,9 @@ class Goal:
     subgoal_texts: Sequence[str] | None = None
     subgoal_images: Sequence[NDArray[np.uint8]] | None = None
     goal_image: NDArray[np.uint8] | None = None
+    fold_count: int | None = None
     fold_lines: Sequence[FoldLine] | None = None
+    ideals: Sequence[Outcome] | None = None
     state: Any = None
     simulator: Any = None
 
@@ -266,8 +270,8 @@ class Goal:
 class Agent(Protocol):
     """Maps instruction and pictures to actions; ``polyfold`` composes grounding, planner, policy and LLM.
 
-    ``requires`` is a subset of {"instruction", "subgoal_texts", "subgoal_images", "goal_image", "fold_lines", "state",
-    "simulator"}; the last three are privileged and marked so wherever results are shown.
+    ``requires`` is a subset of {"instruction", "fold_count", "subgoal_texts", "subgoal_images", "goal_image",
+    "fold_lines", "ideals", "state", "simulator"}; the last four are privileged and marked so wherever results are shown.
     """
 
     requires: ClassVar[frozenset[str]]

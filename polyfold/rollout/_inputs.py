@@ -15,10 +15,10 @@ from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import Task
 from polyfold.types import Observation, SimState
 
-GUIDED = frozenset({"subgoal_texts", "subgoal_images", "goal_image", "fold_lines"})
+GUIDED = frozenset({"subgoal_texts", "subgoal_images", "goal_image", "fold_lines", "ideals"})
 """What is made from a task and the true keypoints."""
 
-PRIVILEGED = frozenset({"fold_lines", "state", "simulator"})
+PRIVILEGED = frozenset({"fold_lines", "ideals", "state", "simulator"})
 """What no camera and no person could tell; agents that require it are marked wherever results are shown."""
 
 
@@ -55,7 +55,7 @@ def goal_for(agent: Agent, start: Start, template: Template, agent_seed: int) ->
         ConfigError: if it requires guidance and there is no task to make it from.
     """
     requires = agent.requires
-    unknown = requires - {"instruction", *GUIDED, *PRIVILEGED}
+    unknown = requires - {"instruction", "fold_count", *GUIDED, *PRIVILEGED}
     if unknown:
         raise PlanError(
             f"the agent requires {sorted(unknown)}, which no loop can give; see polyfold.plugins.interfaces.Agent"
@@ -69,7 +69,12 @@ def goal_for(agent: Agent, start: Start, template: Template, agent_seed: int) ->
 
 
 def _offered(start: Start) -> dict[str, Any]:
-    return {"instruction": start.instruction, "state": start.simulator.state, "simulator": start.simulator}
+    return {
+        "instruction": start.instruction,
+        "fold_count": None if start.task is None else len(start.task.steps),
+        "state": start.simulator.state,
+        "simulator": start.simulator,
+    }
 
 
 def _guidance(start: Start) -> dict[str, Any]:
@@ -83,4 +88,5 @@ def _guidance(start: Start) -> dict[str, Any]:
         "subgoal_images": (made.goal_image,) if final else made.subgoal_images,
         "goal_image": made.goal_image,
         "fold_lines": made.fold_lines,
+        "ideals": made.ideals,
     }

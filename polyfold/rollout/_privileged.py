@@ -16,7 +16,7 @@ from polyfold.geometry import FoldLine
 from polyfold.tasks import Task, fold_lines
 from polyfold.tasks._ideal import fold_step_by_step
 from polyfold.tasks._words import describe
-from polyfold.types import Observation, SimState
+from polyfold.types import Observation, Outcome, SimState
 
 Image = NDArray[np.uint8]
 
@@ -29,11 +29,13 @@ class PrivilegedInputs:
         fold_lines: the ideal fold lines [px], one per step.
         subgoal_texts: each step in words.
         subgoal_images: what the garment should look like after each step, uint8, shape (H, W, 3).
+        ideals: the flat garment and what it should be after each step.
     """
 
     fold_lines: tuple[FoldLine, ...]
     subgoal_texts: tuple[str, ...]
     subgoal_images: tuple[Image, ...]
+    ideals: tuple[Outcome, ...]
 
     @property
     def goal_image(self) -> Image:
@@ -53,7 +55,8 @@ def privileged_inputs(task: Task, garment: Garment, flat: SimState, seen: Observ
     lines = fold_lines(task, flat.keypoint_pixels())
     folded = fold_step_by_step(flat, garment, lines)
     images = tuple(_drawn(ideal.mask, garment.colours[0], seen.rgb[0, 0]) for ideal in folded)
-    return PrivilegedInputs(tuple(lines), tuple(describe(fold) for fold in task.steps), images)
+    ideals = tuple(ideal.outcome(flat, garment.mesh) for ideal in folded)
+    return PrivilegedInputs(tuple(lines), tuple(describe(fold) for fold in task.steps), images, ideals)
 
 
 def _drawn(mask: NDArray[np.bool_], cloth: tuple[int, int, int], table: Image) -> Image:

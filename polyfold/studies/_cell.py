@@ -67,7 +67,7 @@ def evaluate_cell(study: Study, cell: Cell, pictures: str = "none", render: Rend
     except (ActionError, GroundingError, PlanError, SimulationError) as error:
         failure = Failure("infrastructure", f"the oracle failed: {error}")
         references, episode = [], replace(episode, failure=episode.failure or failure)
-    end = Outcome(episode.initial_state, episode.final_state, final_mask(episode))
+    end = Outcome(episode.initial_state, episode.final_state, final_mask(episode), episode.garment.mesh)
     metrics = {name: plugins.create("metrics", name, study.metrics.get(name)) for name in plugins.names("metrics")}
     comparison = compare_end(end, references, metrics, criteria(study.criteria))
     record = _record(study, cell, _Judged(entry, episode, end.mask, comparison), started)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ from polyfold.geometry import Camera, FoldLine, iou
 from polyfold.geometry._masks import fill_polygon
 from polyfold.polygon._covering import covered_area, overlap_area, shapes, solid_parts
 from polyfold.polygon._layers import Facet, cut_facets
-from polyfold.types import SimState
+from polyfold.types import Outcome, SimState
 from polyfold.types._fidelity import Fidelity, Reference
 
 if TYPE_CHECKING:
@@ -46,6 +46,10 @@ class IdealFold:
     layer: NDArray[np.int64]
     mask: NDArray[np.bool_]
     area: float
+
+    def outcome(self, flat: SimState, mesh: Mesh) -> Outcome:
+        """As metrics want it, folded from the flat garment."""
+        return Outcome(flat, replace(flat, positions=self.positions), self.mask, mesh)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import ConfigError
+from polyfold.garments import Mesh
 from polyfold.types._state import SimState
 
 
@@ -20,11 +21,13 @@ class Outcome:
         start: state of the flat garment.
         end: state after the last fold.
         mask: the cloth in the last picture, bool, shape (H, W).
+        mesh: of the garment: which particles are neighbours, and which are its outline.
     """
 
     start: SimState
     end: SimState
     mask: NDArray[np.bool_]
+    mesh: Mesh
 
 
 @dataclass(frozen=True)

@@ -101,6 +101,6 @@ def study_of(
         "garments": garments,
         "first_seed": first_seed,
         "reference": "ideal",
-        "base": {"agent": {"name": "oracle", "ground": True}},
+        "base": {"agent": {"name": "fold-lines", "ground": True}},
         "variants": variants,
     }

@@ -28,9 +28,9 @@ class Noop:
 
 
 class Random:
-    """Two random picks on the cloth, carried across a random line through it; some number of folds."""
+    """Two random picks on the cloth, carried across a random line through it; as many folds as the task takes."""
 
-    requires: ClassVar[frozenset[str]] = frozenset()
+    requires: ClassVar[frozenset[str]] = frozenset({"fold_count"})
     uses: ClassVar[tuple[str, ...]] = ("segmenter",)
 
     class Config(BaseModel):
@@ -38,7 +38,7 @@ class Random:
 
         model_config = ConfigDict(frozen=True, extra="forbid")
 
-        folds: int = Field(default=2, ge=1, le=12, description="folds per episode")
+        folds: int = Field(default=2, ge=1, le=12, description="folds where the task leaves their number open")
 
     def __init__(self, config: Config, segmenter: Segmenter) -> None:
         self._folds = config.folds
@@ -47,7 +47,7 @@ class Random:
     def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
         """Seed the choices of this episode."""
         self._rng = np.random.default_rng(goal.seed)
-        self._left = self._folds
+        self._left = goal.fold_count or self._folds
         return ()
 
     def decide(self, observation: Observation) -> Decision | None:
