@@ -38,7 +38,9 @@ def register_segmenters(register):
 def register_agents(register):
     """Register the oracle, the policies' ablation, and the two baselines that every result is compared with."""
     register(
-        "oracle", "polyfold_standard.agents.oracle:Oracle", "true fold lines, tries picks until near the ideal (privileged)"
+        "oracle",
+        "polyfold_standard.agents.oracle:Oracle",
+        "true fold lines, picks that come near the ideal (privileged)",
     )
     register(
         "fold-lines", "polyfold_standard.agents.fold_lines:FoldLines", "true fold lines, picks by policy (privileged)"

@@ -1,9 +1,9 @@
 """How good a fold is, from 0 to 100: what judges of folding contests look at, as one metric beside success.
 
-RoboCup@Home and the cloth challenges of robotics conferences grade what success only admits: whether edges meet, whether
-the packet has the size it should, whether it lies flat, whether there are folds that nobody asked for. The four shares are
-multiplied and the fourth root is taken, so that a fold that fails one of them is not saved by the others: cloth that was
-left as it lay is flat and smooth, and has a quality of 0.
+RoboCup@Home grades so what success only admits or refuses: whether edges meet, whether the packet has the size it should,
+whether it lies flat, whether there are folds that nobody asked for. The four shares are multiplied and the fourth root is
+taken, so that a fold that fails one of them is not saved by the others: cloth that was left as it lay is flat and smooth,
+and has a quality of 0.
 """
 
 from __future__ import annotations
@@ -127,15 +127,13 @@ def _creased(found: Floats, reference: Outcome, mesh: Mesh) -> float:
     flat = np.abs(ideal) > 0.98 * np.abs(rest)
     middles = mesh.vertices[mesh.triangles].mean(axis=1)
     if not flat.all():
-        from scipy.spatial import cKDTree
+        from scipy.spatial import KDTree
 
-        to_crease, _ = cKDTree(middles[~flat]).query(middles)
+        to_crease, _ = KDTree(middles[~flat]).query(middles)
         flat &= to_crease > BEND
-    if not flat.any():
-        return 0.0
     seen = _areas(found[:, :2], mesh.triangles) * np.sign(ideal)
     creased = seen < TILT * np.abs(rest)
-    return float(np.abs(rest)[flat & creased].sum() / np.abs(rest)[flat].sum())
+    return float(np.abs(rest)[flat & creased].sum() / np.abs(rest).sum())
 
 
 def _areas(points: Floats, triangles: NDArray[np.int32]) -> Floats:

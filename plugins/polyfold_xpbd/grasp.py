@@ -26,15 +26,15 @@ Lower on the way down: a flap that is laid down taut drags what lies below it al
 LIMP, STIFF = (0.002, 1.5), (0.006, 1.8)
 """Height of the held packet [m] and the shape of its path, of a limp and of a stiff packet.
 
-1 is a triangle, 2 half an ellipse. Limp cloth is best laid down along a flatter path, which takes it across taut, though
-not so flat that the long flap, hanging, pulls the cloth below along; the inner plies of a thick packet have cloth to
-spare, and coming in flat they push the plies below along.
+1 is a triangle, 2 half an ellipse. Limp cloth is best laid down along a flatter path, which takes it across taut, but
+not so flat that a long flap, hanging, pulls the cloth below along; the inner plies of a thick packet have cloth to spare,
+and coming in flat they push the plies below along.
 """
 SPEED, RAMP, HOLD = 0.7, 0.15, 0.05
 """Speed of the gripper [m/s], time to reach it and to stop [s], and pause before it opens [s].
 
-Slower, at 0.5, the flap hangs longer over what lies below and drags it by up to a mesh edge before the crease has rolled
-to its line.
+Slower, at 0.5, a limp flap hangs longer over what lies below, and drags it by up to a mesh edge before the crease has
+rolled to its line.
 """
 
 

@@ -13,7 +13,7 @@ from polyfold.cli._components import add_component_options, experiment_from
 from polyfold.cli._garment_source import add_source_options, garment_from
 
 if TYPE_CHECKING:
-    from polyfold.types import EpisodeStart, Step
+    from polyfold.types import EpisodeStart, Fidelity, Step
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -77,12 +77,12 @@ def _empty_grips(step: Step) -> str:
     return f", no cloth in the grip of {' and '.join(empty)}" if empty else ""
 
 
+def _how_to_name(fidelity: Fidelity) -> str:
+    return "" if fidelity.vouched else " (--task)"
+
+
 def _print_result(episode: polyfold.Episode, out: Path | None) -> None:
-    fidelity = episode.fidelity
-    if fidelity is not None:
-        print(
-            f"  result: IoU {fidelity.iou:.3f} with the ideal, moved part off by {fidelity.moved_part_error_mm:.1f} mm "
-            f"({fidelity.reference})"
-        )
+    if episode.fidelity is not None:
+        print(f"  result: {episode.fidelity.in_words(episode.task)}{_how_to_name(episode.fidelity)}")
     if out is not None:
         print(f"  pictures: {out / 'filmstrip.png'}, {out / 'fold.gif'}")

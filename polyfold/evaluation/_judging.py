@@ -1,7 +1,9 @@
-"""How well an episode went: against the ideal fold, along a known task's lines where the fold is one."""
+"""How well an episode went: beside the ideal fold of what was asked for, as far as anything but the plan tells."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,12 +11,20 @@ from numpy.typing import NDArray
 
 from polyfold import plugins
 from polyfold.errors import GroundingError
+from polyfold.evaluation._criteria import criteria, succeeded
 from polyfold.evaluation._suites import find_task, known_tasks
 from polyfold.geometry import FoldLine
-from polyfold.tasks import fold_lines
-from polyfold.tasks._ideal import fidelity
+from polyfold.tasks import Task, fold_lines
+from polyfold.tasks._ideal import fidelity, fold_ideally
 from polyfold.tasks._lines import recognise
-from polyfold.types import Episode, Observation
+from polyfold.types import Episode, Observation, Outcome
+from polyfold.types._fidelity import Reference, Verdict
+
+VERDICTS: Sequence[tuple[Verdict, str]] = (("good", "strict"), ("fair", "lenient"))
+"""Verdicts and the criteria that earn them, the best first."""
+
+QUALITY = "quality"
+"""The metric of graded quality."""
 
 
 def final_mask(episode: Episode) -> NDArray[np.bool_]:
@@ -37,24 +47,71 @@ def _cloth(episode: Episode, seen: Observation) -> NDArray[np.bool_]:
 def judge(episode: Episode, task_id: str | None = None) -> Episode:
     """The episode with its fidelity.
 
-    The ideal lines come from the true keypoints if a task is named or the plan is recognised as one; otherwise they are
-    the planned lines, and the fidelity is labelled ``self-referenced``.
+    The ideal lines come from the true keypoints and the task that is named, else the task one of whose own sentences
+    was said, else the one that the plan is recognised as; else they are the planned lines. The fidelity says which
+    (:class:`polyfold.types.Fidelity`).
     """
-    keypoints = episode.initial_state.keypoint_pixels()
-    planned = [step.fold_line for step in episode.final_attempts() if step.fold_line is not None]
-    if task_id is None and not episode.steps:
+    kind = episode.garment.kind
+    if task_id is not None:
+        return _beside(episode, find_task(task_id, kind), "task")
+    if not episode.steps:
         return episode
-    if task_id is None:
-        task_id = recognise(known_tasks(episode.garment.kind), keypoints, planned)
-    lines: list[FoldLine] = (
-        planned if task_id is None else fold_lines(find_task(task_id, episode.garment.kind), keypoints)
-    )
-    found = fidelity(
-        final_mask(episode),
-        episode.final_state,
-        episode.initial_state,
-        episode.garment,
-        lines,
-        "self-referenced" if task_id is None else "keypoints",
-    )
-    return replace(episode, task=task_id, fidelity=found, ideal_lines=tuple(lines))
+    tasks = known_tasks(kind)
+    asked = [task for task in tasks if _plain(episode.instruction) in map(_plain, task.instructions)]
+    if asked:
+        # A sentence may ask for several tasks alike, such as those that differ in what goes first.
+        judged = [_beside(episode, task, "sentence") for task in asked]
+        return min(judged, key=_rank)
+    planned = [step.fold_line for step in episode.final_attempts() if step.fold_line is not None]
+    recognised = recognise(tasks, episode.initial_state.keypoint_pixels(), planned)
+    if recognised is not None:
+        return _beside(episode, find_task(recognised, kind), "recognised")
+    return _compared(episode, planned, "self-referenced")
+
+
+def _plain(sentence: str) -> str:
+    """A sentence without what makes no difference: case, spaces, the full stop."""
+    return " ".join(sentence.casefold().split()).rstrip(" .!")
+
+
+def _rank(episode: Episode) -> tuple[int, float]:
+    """Sorts judged episodes, the best first."""
+    assert episode.fidelity is not None
+    verdicts = [verdict for verdict, _ in VERDICTS]
+    verdict = episode.fidelity.verdict
+    return verdicts.index(verdict) if verdict in verdicts else len(verdicts), -episode.fidelity.iou
+
+
+def _beside(episode: Episode, task: Task, reference: Reference) -> Episode:
+    lines = fold_lines(task, episode.initial_state.keypoint_pixels())
+    return replace(_compared(episode, lines, reference), task=task.id)
+
+
+def _compared(episode: Episode, lines: Sequence[FoldLine], reference: Reference) -> Episode:
+    """The episode beside the flat garment folded ideally along lines."""
+    mask, flat, mesh = final_mask(episode), episode.initial_state, episode.garment.mesh
+    found = fidelity(mask, episode.final_state, flat, episode.garment, lines, reference)
+    ideal = fold_ideally(flat, episode.garment, lines).outcome(flat, mesh)
+    end = Outcome(flat, episode.final_state, mask, mesh)
+    found = replace(found, verdict=_verdict(end, ideal), quality=_quality(end, ideal))
+    return replace(episode, fidelity=found, ideal_lines=tuple(lines))
+
+
+def _verdict(end: Outcome, ideal: Outcome) -> Verdict | None:
+    """The best verdict that the end earns; None where a criterion is not installed."""
+    known = plugins.names("criteria")
+    if any(name not in known for _, name in VERDICTS):
+        return None
+    for verdict, name in VERDICTS:
+        bounds = criteria([name])[name]
+        if succeeded({bound.metric: _value(bound.metric, end, ideal) for bound in bounds}, bounds):
+            return verdict
+    return "bad"
+
+
+def _quality(end: Outcome, ideal: Outcome) -> float:
+    return _value(QUALITY, end, ideal) if QUALITY in plugins.names("metrics") else math.nan
+
+
+def _value(metric: str, end: Outcome, ideal: Outcome) -> float:
+    return plugins.create("metrics", metric).score(end, [ideal])

@@ -89,6 +89,8 @@ class FidelityRecord(LogRecord):
     iou: float
     moved_part_error_mm: float | None
     reference: str
+    verdict: str | None = None
+    quality: float | None = None
 
 
 class FabricRecord(LogRecord):
@@ -230,6 +232,8 @@ class StudyEpisodeRecord(KeyedRecord, EpisodeRecord):
         type, split: of the task; see :class:`polyfold.tasks.Task`.
         steps_wanted: folds of the task; None for goals that leave them open.
         wording: which of the task's sentences was used.
+        wording_unseen: whether no part of the project was ever tuned on sentences like it; None where the suite
+            doesn't say.
         metrics: value by name, in the unit that the run's record names; None where there was nothing to measure.
         done: what a goal's own bounds say about the end; None where it has none.
         recorded_language: accounts of the language model in runs of schema version 1, which kept no calls.
@@ -248,6 +252,7 @@ class StudyEpisodeRecord(KeyedRecord, EpisodeRecord):
     split: str | None
     steps_wanted: int | None
     wording: int
+    wording_unseen: bool | None = None
     metrics: dict[str, float | None]
     done: BoundsRecord | None = None
     step_errors_mm: tuple[float | None, ...] = ()

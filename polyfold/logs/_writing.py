@@ -141,6 +141,8 @@ def _fidelity(fidelity: Fidelity | None) -> FidelityRecord | None:
         iou=round(fidelity.iou, 4),
         moved_part_error_mm=finite(fidelity.moved_part_error_mm, 2),
         reference=fidelity.reference,
+        verdict=fidelity.verdict,
+        quality=finite(fidelity.quality, 1),
     )
 
 

@@ -271,7 +271,8 @@ class Agent(Protocol):
     """Maps instruction and pictures to actions; ``polyfold`` composes grounding, planner, policy and LLM.
 
     ``requires`` is a subset of {"instruction", "fold_count", "subgoal_texts", "subgoal_images", "goal_image",
-    "fold_lines", "ideals", "state", "simulator"}; the last four are privileged and marked so wherever results are shown.
+    "fold_lines", "ideals", "state", "simulator"}; the last four are privileged and marked so wherever results are
+    shown.
     """
 
     requires: ClassVar[frozenset[str]]

@@ -173,6 +173,7 @@ def _record(study: Study, cell: Cell, judged: _Judged, started: datetime) -> Stu
         split=entry.split if isinstance(entry, Task) else None,
         steps_wanted=len(entry.steps) if isinstance(entry, Task) else None,
         wording=cell.wording,
+        wording_unseen=_is_unseen(study, cell),
         metrics={name: finite(value, 4) for name, value in comparison.values.items()},
         done=done,
         step_errors_mm=_step_errors(episode, comparison.nearest),
@@ -181,6 +182,11 @@ def _record(study: Study, cell: Cell, judged: _Judged, started: datetime) -> Stu
         reference_idle=comparison.nearest is not None and comparison.nearest.is_idle(),
         peak_memory_mb=round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
     )
+
+
+def _is_unseen(study: Study, cell: Cell) -> bool | None:
+    unseen = suite(study.suite).unseen_wordings
+    return None if unseen is None else cell.wording in unseen
 
 
 def _done(judged: _Judged) -> BoundsRecord | None:

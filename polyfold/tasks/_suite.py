@@ -98,6 +98,8 @@ class Suite(BaseModel):
         name: what it is called in messages.
         description: one line.
         accept_from: name of the registered suite whose tasks the goals accept; its own name for its own tasks.
+        unseen_wordings: positions among each task's instructions of those that no part of the project was ever tuned
+            on; None where nobody says.
         tasks: the tasks with given folds (``[[task]]``).
         goals: the open tasks (``[[goal]]``).
     """
@@ -108,6 +110,7 @@ class Suite(BaseModel):
     name: str
     description: str = ""
     accept_from: str = "polyfold70"
+    unseen_wordings: frozenset[int] | None = None
     tasks: tuple[Task, ...] = Field((), alias="task")
     goals: tuple[OpenTask, ...] = Field((), alias="goal")
 

@@ -1,11 +1,16 @@
-"""How near a result is to the ideal fold."""
+"""How near a result is to the ideal fold, and what that is worth."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
-Reference = Literal["keypoints", "self-referenced"]
+Reference = Literal["task", "sentence", "recognised", "self-referenced"]
+"""Who says which fold was wanted: the caller named a task; the sentence is one of a task's own; nobody, and the plan is
+recognised as a task's; nobody, and the plan is all there is."""
+
+Verdict = Literal["good", "fair", "bad"]
 
 
 @dataclass(frozen=True)
@@ -17,11 +22,46 @@ class Fidelity:
         moved_part_error_mm: mean distance on the table [mm] between where the particles that the ideal moves by more
             than 20 mm are and where they should be; NaN when it moves none.
         moved: how many particles that are.
-        reference: ``keypoints`` when the ideal lines come from a task and the true keypoints, ``self-referenced`` when
-            they are the lines that were planned: then a wrong plan that is executed well scores well.
+        reference: who says which fold was wanted. With ``recognised`` and ``self-referenced`` nobody does: then a wrong
+            plan that is executed well scores well.
+        verdict: ``good`` within the strict criterion, ``fair`` within the lenient one, else ``bad``; None where they
+            are not installed.
+        quality: graded, 0 to 100; NaN where that metric is not installed.
     """
 
     iou: float
     moved_part_error_mm: float
     moved: int
     reference: Reference
+    verdict: Verdict | None = None
+    quality: float = math.nan
+
+    @property
+    def vouched(self) -> bool:
+        """Whether anything besides the plan itself says which fold was wanted."""
+        return self.reference in ("task", "sentence")
+
+    def in_words(self, task: str | None = None) -> str:
+        """Whether the result is good and beside what, in one sentence; no praise where nothing vouches for the plan.
+
+        Args:
+            task: the task whose ideal it was compared with, if there is one.
+        """
+        if self.vouched:
+            asked = "which was named" if self.reference == "task" else "which the sentence asks for"
+            quality = "" if math.isnan(self.quality) else f", quality {self.quality:.0f} of 100"
+            return f"{self.verdict or 'compared'}: {self._figures()}{quality}; beside the ideal {task}, {asked}"
+        ended = "not as planned" if self.verdict == "bad" else "as planned"
+        if self.reference == "recognised":
+            return (
+                f"{ended}: {self._figures()}, beside the ideal {task}, whose lines the plan has; nothing vouches for that "
+                "having been meant: look at the picture, or name the task"
+            )
+        return (
+            f"nothing vouches for the plan: it is no known task's, and compared with itself the cloth ended {ended} "
+            f"({self._figures()}); look at the picture, or name the task that was meant"
+        )
+
+    def _figures(self) -> str:
+        moved = self.moved_part_error_mm
+        return f"IoU {self.iou:.3f}" + ("" if math.isnan(moved) else f", moved part off by {moved:.1f} mm")

@@ -64,10 +64,7 @@ def result_caption(episode: Episode) -> str:
         return f"{episode.failure.stage}: {episode.failure.reason}"
     if episode.fidelity is None:
         return "nothing was folded"
-    error = episode.fidelity.moved_part_error_mm
-    against = "ideal" if episode.fidelity.reference == "keypoints" else "ideal along the planned lines"
-    moved = "" if np.isnan(error) else f", moved part off by {error:.0f} mm"
-    return f"IoU {episode.fidelity.iou:.3f} with the {against}{moved}"
+    return episode.fidelity.in_words(episode.task)
 
 
 @makes(Episode, "html")

@@ -1,8 +1,8 @@
 """The oracle: the best that one knows how to do with a task, told all that there is to know.
 
-It folds along the true lines, looks how near each fold came to the ideal, and while that is not near enough puts the cloth
-back and tries its next-best picks: a little less far, since a bend uses up cloth, or a little further in or out. What even
-the oracle can't bring near the ideal is a task that is unfit to judge others by.
+It folds along the true lines, looks how near each fold came to the ideal, and while that is not near enough puts the
+cloth back and tries its next-best picks: a little less far, since a bend uses up cloth, or a little further in or out.
+A task that even the oracle can't bring near the ideal is unfit to judge others by.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ VARIATIONS = (
     (12.0, 0.12),
     (0.0, 0.24),
 )
-"""What is tried in turn: how much less far the flap is carried than the line says [mm], and how much further towards each
-other two arms pick, as a share of their distance. A resting bend of a ply takes up 6 to 8 mm of cloth."""
+"""What is tried in turn: how much less far the flap is carried than the line says [mm], and how much further towards
+each other two arms pick, as a share of their distance. A resting bend of a ply takes up 6 to 8 mm of cloth."""
 
 
 @dataclass(eq=False)
@@ -135,7 +135,7 @@ class Oracle:
 
 
 def _variations(action: Action, line: FoldLine, mask: NDArray[np.bool_], camera: Camera) -> list[Action]:
-    """An action carried less far, or with its arms nearer to each other or farther apart, where they still hold cloth."""
+    """An action carried less far, or with its arms nearer together or farther apart, where all still hold cloth."""
     found = []
     for short_mm, inwards in VARIATIONS:
         picks = action.picks + inwards * (action.picks.mean(axis=0) - action.picks)
