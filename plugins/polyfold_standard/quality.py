@@ -1,9 +1,9 @@
 """How good a fold is, from 0 to 100: what judges of folding contests look at, as one metric beside success.
 
-RoboCup@Home grades so what success only admits or refuses: whether edges meet, whether the packet has the size it should,
-whether it lies flat, whether there are folds that nobody asked for. The four shares are multiplied and the fourth root is
-taken, so that a fold that fails one of them is not saved by the others: cloth that was left as it lay is flat and smooth,
-and has a quality of 0.
+RoboCup@Home grades so what success only admits or refuses: whether edges meet, whether the packet has the size it
+should, whether it lies flat, whether there are folds that nobody asked for. The four shares are multiplied and the
+fourth root is taken, so that a fold that fails one of them is not saved by the others: cloth that was left as it lay is
+flat and smooth, and has a quality of 0.
 """
 
 from __future__ import annotations

@@ -27,8 +27,8 @@ LIMP, STIFF = (0.002, 1.5), (0.006, 1.8)
 """Height of the held packet [m] and the shape of its path, of a limp and of a stiff packet.
 
 1 is a triangle, 2 half an ellipse. Limp cloth is best laid down along a flatter path, which takes it across taut, but
-not so flat that a long flap, hanging, pulls the cloth below along; the inner plies of a thick packet have cloth to spare,
-and coming in flat they push the plies below along.
+not so flat that a long flap, hanging, pulls the cloth below along; the inner plies of a thick packet have cloth to
+spare, and coming in flat they push the plies below along.
 """
 SPEED, RAMP, HOLD = 0.7, 0.15, 0.05
 """Speed of the gripper [m/s], time to reach it and to stop [s], and pause before it opens [s].

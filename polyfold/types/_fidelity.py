@@ -54,8 +54,8 @@ class Fidelity:
         ended = "not as planned" if self.verdict == "bad" else "as planned"
         if self.reference == "recognised":
             return (
-                f"{ended}: {self._figures()}, beside the ideal {task}, whose lines the plan has; nothing vouches for that "
-                "having been meant: look at the picture, or name the task"
+                f"{ended}: {self._figures()}, beside the ideal {task}, whose lines the plan has; nothing vouches for "
+                "this having been meant: look at the picture, or name the task"
             )
         return (
             f"nothing vouches for the plan: it is no known task's, and compared with itself the cloth ended {ended} "
