@@ -6,7 +6,7 @@ INSTALLED := $(VENV)/.installed
 LINTERS := $(VENV)/.linters
 PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo test lint clean
+.PHONY: demo test lint results clean
 
 $(INSTALLED): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
@@ -31,6 +31,10 @@ lint: $(LINTERS)
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports --no-cache --no-logo
 	PYRIGHT_PYTHON_IGNORE_WARNINGS=1 $(BIN)/pyright --project . --pythonpath $(BIN)/python
+
+# Every recorded table again, about ten hours of two cores, in runs/results; goes on where it was stopped.
+results: $(INSTALLED)
+	$(BIN)/python -m experiments.everything
 
 clean:
 	rm -rf $(VENV) runs build dist

@@ -132,19 +132,20 @@ def _episode(job: Job, agent: str, seed: int, policy: str) -> JobRecord:
 def table(records: Sequence[JobRecord]) -> str:
     """The results as a markdown table, a row per job and agent."""
     lines = [
-        "| job | agent | n | IoU, mean | lowest | good | moved-part error, mean [mm] | failures | seconds an episode |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| job | agent | n | IoU, mean | lowest | good | moved part, mean [mm] | quality | failures | seconds an episode |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for job, agent, rows in _groups(records):
         judged = [row.fidelity for row in rows if row.fidelity is not None]
         iou = np.array([fidelity.iou for fidelity in judged])
         error = np.array([fidelity.moved_part_error_mm for fidelity in judged], float)
+        quality = np.array([fidelity.quality for fidelity in judged], float)
         good = rows[0].good
         failures = sum(row.failure is not None for row in rows)
         seconds = np.mean([sum(row.seconds.values()) for row in rows])
         lines.append(
             f"| {job} | {agent} | {len(rows)} | {iou.mean():.3f} | {iou.min():.3f} | {(iou >= good).sum()} of "
-            f"{len(rows)} at {good:.2f} | {np.nanmean(error):.1f} | {failures} | {seconds:.1f} |"
+            f"{len(rows)} at {good:.2f} | {np.nanmean(error):.1f} | {quality.mean():.0f} | {failures} | {seconds:.1f} |"
         )
     return "\n".join(lines)
 

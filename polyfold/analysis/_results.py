@@ -62,6 +62,19 @@ class Results:
         kept = [r for r in self.records if r.steps_wanted is not None and wanted(r.steps_wanted)]
         return replace(self, records=kept)
 
+    def of_wordings(self, wordings: str) -> Results:
+        """Only the episodes whose sentence nothing was tuned on (``unseen``), or only the others (``seen``).
+
+        Raises:
+            ConfigError: if the suite does not say which those are.
+        """
+        if wordings not in ("seen", "unseen"):
+            raise ConfigError(f"wordings are seen or unseen, not {wordings!r}; choose one of the two")
+        if all(record.wording_unseen is None for record in self.records):
+            raise ConfigError(f"{self.study.suite} doesn't say which wordings are unseen; leave the choice out")
+        wanted = wordings == "unseen"
+        return replace(self, records=[record for record in self.records if record.wording_unseen == wanted])
+
     def plot(self, column: str = "success %") -> Figure:
         """Bars per kind of garment and variant with intervals, as a matplotlib figure.
 
@@ -111,6 +124,7 @@ def _row(record: StudyEpisodeRecord) -> dict[str, Any]:
         "size_m": record.garment.size_m,
         "fabric": None if record.garment.fabric is None else record.garment.fabric.name,
         "wording": record.wording,
+        "wording_unseen": record.wording_unseen,
         "instruction": record.instruction,
         "folds": record.folds,
         "retries": record.retries,

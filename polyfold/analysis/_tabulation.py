@@ -8,19 +8,13 @@ from typing import Any
 from polyfold.analysis._columns import Column, column_of, columns_of, shared
 from polyfold.analysis._differences import holm
 from polyfold.analysis._intervals import Estimate, mean
+from polyfold.analysis._notes import INTERVAL, about, noise_floor, remarks
 from polyfold.analysis._results import Results
 from polyfold.analysis._tables import CERTAIN, Cell, Figure, Table
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.logs import StudyEpisodeRecord
 from polyfold.types._views import makes
 
-REFERENCES = {
-    "oracle": "the oracle from the same start",
-    "ideal": "the flat garment folded geometrically along the task's lines",
-}
-"""What results are compared with, in words."""
-
-INTERVAL = "95 % interval for other sentences and garments"
 TEST = "not 0, p < 0.05 by exact McNemar and sign flips of sentences or garments, after Holm over the table's cells"
 
 Key = Callable[[StudyEpisodeRecord], str | None]
@@ -30,14 +24,20 @@ GROUPS: Mapping[str, Key] = {
     "type": lambda record: record.type,
     "task": lambda record: record.task,
     "split": lambda record: record.split,
+    "wording": lambda record: _wording(record),
 }
 """What rows can be made of; the groups ``none`` and ``step`` besides."""
+
+
+def _wording(record: StudyEpisodeRecord) -> str:
+    """A wording by number; those that nothing was tuned on are marked, and sort before the others."""
+    return f"{record.wording}, unseen" if record.wording_unseen else str(record.wording)
 
 
 def table(
     results: Results, columns: Sequence[str] | None = None, groups: str = "kind", noise: Results | None = None
 ) -> Table:
-    """Variants by garment kind (``kind``), task type (``type``), ``task``, ``split``, ``step``, or all (``none``).
+    """Variants by garment kind (``kind``), task type (``type``), ``task``, ``split``, ``wording``, ``step``, or all.
 
     Cells are means with 95 % intervals for other sentences and garments; n is the number of episodes.
 
@@ -45,7 +45,7 @@ def table(
         results: what to tabulate.
         columns: headings, names of metrics or of criteria; by default every metric and criterion of the run.
         groups: what makes a row; ``step`` gives the mean particle error after each of the episode's own folds.
-        noise: a study of what differs without meaning; it becomes a footnote, see :func:`noise_floor`.
+        noise: a study of what differs without meaning; it becomes a footnote (``experiments/noise_floor.toml``).
     """
     if groups == "step":
         return _by_step(results)
@@ -59,7 +59,8 @@ def table(
             rows.append([_marked(variant, records), group, str(len(records)), *figures])
     rows += _published(results, chosen, dict.fromkeys(str(row[1]) for row in rows))
     headers = ["variant", groups if groups != "none" else "", "n", *(column.heading for column in chosen)]
-    return Table(headers, rows, _note(results, noise))
+    note = about(results)
+    return Table(headers, rows, note if noise is None else f"{note} {noise_floor(noise)}")
 
 
 @makes(Results, "html")
@@ -73,35 +74,6 @@ def _chosen(results: Results, columns: Sequence[str] | None) -> list[Column]:
     return [column_of(results.run, name) for name in columns]
 
 
-def _note(results: Results, noise: Results | None) -> str:
-    note = f"{results.study.name}: mean [{INTERVAL}]; reference: {REFERENCES[results.study.reference]}."
-    note += _remarks(results)
-    return note if noise is None else f"{note} {noise_floor(noise)}"
-
-
-def _remarks(results: Results) -> str:
-    """What a reader of any table must know of how its episodes came about."""
-    note = ""
-    if any(record.steps_wanted is None for record in results.records):
-        note += " Goals: the nearest task that each accepts; success includes those that are done by their own bounds."
-    if any(record.privileged for record in results.records):
-        note += " * privileged: sees more than the camera."
-    for change in results.run.changes:
-        note += f" Went on after {change.episodes} episodes with a change: {'; '.join(change.differences)}."
-    return note
-
-
-def noise_floor(noise: Results) -> str:
-    """How far results differ that differ in nothing that matters, as a sentence.
-
-    Args:
-        noise: a study of the oracle with its particles and contacts in other orders.
-    """
-    columns = ", ".join(f"{column.heading} {_mean(column, noise.records)}" for column in columns_of(noise.run))
-    count = len(noise.records)
-    return f"Noise floor, the oracle repeated with particles and contacts in another order (n={count}): {columns}."
-
-
 def _by_step(results: Results) -> Table:
     most = max((len(record.step_errors_mm) for record in results.records), default=0)
     rows: list[list[Cell]] = []
@@ -109,7 +81,7 @@ def _by_step(results: Results) -> Table:
         for kind, records in _grouped(results, variant, "kind"):
             rows.append([_marked(variant, records), kind, *(_after(step, records) for step in range(most))])
     note = f"{results.study.name}: mean particle error [mm] after each fold of the episode's own."
-    note += _remarks(results)
+    note += remarks(results)
     return Table(["variant", "kind", *(f"step {step + 1}" for step in range(most))], rows, note)
 
 
@@ -145,6 +117,8 @@ def _grouped(results: Results, variant: str, groups: str) -> list[tuple[str, lis
     if groups != "none":
         key = GROUPS[groups]
         names = results.kinds() if groups == "kind" else dict.fromkeys(key(record) for record in results.records)
+        if groups == "wording":
+            names = sorted(names, key=lambda name: ("unseen" not in (name or ""), name or ""))
         found = [(name or "–", [record for record in mine if key(record) == name]) for name in names]
     found.append(("all", mine))
     return [(name, records) for name, records in found if records]
@@ -178,7 +152,7 @@ def compare(results: Results, variant: str, baseline: str, columns: Sequence[str
         for label, row in zip(labels, found, strict=True)
     ]
     note = f"{variant} − {baseline}, the same episodes; mean [{INTERVAL}]. {CERTAIN}: {TEST}."
-    note += _remarks(results)
+    note += remarks(results)
     return Table(["kind", "n", *(column.heading for column in chosen)], rows, note)
 
 

@@ -16,11 +16,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", choices=FORMATS, default="markdown", help="default: markdown")
     parser.add_argument(
         "--by",
-        choices=["kind", "type", "task", "split", "step", "none", "provider"],
+        choices=["kind", "type", "task", "split", "wording", "step", "none", "provider"],
         default="kind",
         help="default: kind; provider compares variants as language models, with validity, latency, tokens and cost",
     )
     parser.add_argument("--steps", choices=["single", "multi"], help="only tasks of one fold, or of several")
+    parser.add_argument(
+        "--wordings", choices=["unseen", "seen"], help="only sentences that nothing was tuned on, or only the others"
+    )
     parser.add_argument("--compare", nargs=2, metavar=("VARIANT", "BASELINE"), help="paired differences instead")
     parser.add_argument(
         "--noise-floor", type=Path, metavar="DIR", help="run directory of experiments/noise_floor.toml; a footnote"
@@ -31,6 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Print the table."""
     found = polyfold.open(arguments.out)
     found = found.of_length(arguments.steps) if arguments.steps else found
+    found = found.of_wordings(arguments.wordings) if arguments.wordings else found
     noise = None if arguments.noise_floor is None else polyfold.open(arguments.noise_floor)
     if arguments.compare:
         made = polyfold.compare(found, *arguments.compare)

@@ -14,7 +14,7 @@ def test_a_sentence_folds_a_t_shirt_into_a_block_and_leaves_its_pictures(polyfol
     assert result.out.count("fold ") >= 3
     episode = json.loads((out / "episode.json").read_text())
     assert len(episode["subgoals"]) == len(episode["steps"]) == 3
-    assert episode["fidelity"]["reference"] == "keypoints"
+    assert episode["fidelity"]["reference"] == "recognised"
     assert episode["fidelity"]["iou"] > 0.85
     assert episode["task"].startswith("tshirt-block")
     for line in (out / "transcript.jsonl").read_text().splitlines():

@@ -16,7 +16,7 @@ def outcome(agent, task):
     cloth = polyfold.garment("square", seed=2003, edge_length=0.02)
     episode = attempt("", cloth, 0, polyfold.Experiment.of(agent=agent), task=task)
     mask = plugins.create("segmenters", "colour").segment(episode.final)
-    return Outcome(episode.initial_state, episode.final_state, mask)
+    return Outcome(episode.initial_state, episode.final_state, mask, cloth.mesh)
 
 
 def scores(result, *references, **params):
@@ -50,7 +50,7 @@ def test_alignment_forgives_a_rigid_motion_only_when_asked():
     turned = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     moved = reference.end.positions @ turned + [0.1, 0.05, 0.0]
     end = polyfold.types.SimState(moved, reference.end.velocities, reference.end.keypoints, reference.end.camera)
-    result = Outcome(reference.start, end, reference.mask)
+    result = Outcome(reference.start, end, reference.mask, reference.mesh)
     assert scores(result, reference)["mppe"] > 50
     assert scores(result, reference, mppe={"align": True})["mppe"] == pytest.approx(0, abs=1e-6)
 
@@ -60,7 +60,7 @@ def test_aligned_overlap_and_moved_part_forgive_a_turn_too():
     quarter = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     turned = reference.end.positions @ quarter
     end = polyfold.types.SimState(turned, reference.end.velocities, reference.end.keypoints, reference.end.camera)
-    result = Outcome(reference.start, end, np.rot90(reference.mask))
+    result = Outcome(reference.start, end, np.rot90(reference.mask), reference.mesh)
     plain = scores(result, reference)
     aligned = scores(result, reference, **{"miou": {"align": True}, "moved-part": {"align": True}})
     assert aligned["miou"] > 0.98 > plain["miou"]

@@ -55,7 +55,7 @@ def fold(kind, recover=True, sentence=None, seed=2000, **mishaps):
 def error(episode, kind, sentence=None):
     """Mean distance [mm] to the result without mishaps, wherever on the table it lies."""
     wanted, found = (
-        Outcome(e.initial_state, e.final_state, np.zeros((1, 1), bool))
+        Outcome(e.initial_state, e.final_state, np.zeros((1, 1), bool), e.garment.mesh)
         for e in (fold(kind, sentence=sentence, seed=episode.seed), episode)
     )
     return plugins.create("metrics", "mppe", {"align": True}).score(found, [wanted])

@@ -180,7 +180,7 @@ def test_references_are_made_anew_after_a_change_of_what_the_oracle_uses(my_plug
 
 def test_a_run_says_what_was_asked_with_all_defaults(my_plugin, study, tmp_path):
     run = polyfold.run(study, tmp_path / "run", progress=False).run
-    assert run.asked["study"]["reference"] == "oracle"
+    assert run.asked["study"]["reference"] == "ideal"
     used = run.components["polyfold"]
     assert used["policy"].name == "shifted"
     assert "gamma" in used["policy"].params

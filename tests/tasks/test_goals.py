@@ -279,6 +279,7 @@ class TestStudy:
             name="open",
             suite=registered(GOALS),
             first_seed=2000,
+            reference="oracle",
             edge_length=0.02,  # at 30 mm the crease alone takes a tenth of the area
             variants={"polyfold": {}, "oracle": {"agent": "oracle"}, "noop": {"agent": "noop"}},
         )
@@ -341,6 +342,7 @@ class TestStudy:
             tasks=("triangle",),
             first_seed=2000,
             edge_length=0.03,
+            reference="oracle",
             base={"agent": "oracle"},
         )
         record = evaluate_cell(study, next(cells(study)))[0]

@@ -1,0 +1,1 @@
+"""Make every recorded result again: ``make results``, or ``python -m experiments.everything``."""

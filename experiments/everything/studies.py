@@ -1,0 +1,132 @@
+"""The studies whose tables are recorded, and which tables those are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import polyfold
+from polyfold.analysis import Results
+from polyfold.studies import Study
+
+EXPERIMENTS = Path(__file__).parents[1]
+
+Section = tuple[str, str]
+"""A heading, empty for none, and what stands below it as markdown."""
+
+
+@dataclass(frozen=True)
+class StudyStep:
+    """A study, and the tables made of it.
+
+    Attributes:
+        name: of its file in ``experiments``, without the ending; its table is ``results/NAME.md``.
+        hours: of two cores.
+        sections: what its file of results holds.
+        also: further files of results made of the same episodes.
+        variants: only these; all if empty.
+        garments: instead of the study's own number.
+    """
+
+    name: str
+    hours: float
+    sections: Callable[[Results], Sequence[Section]]
+    also: tuple[tuple[str, Callable[[Results], Sequence[Section]]], ...] = ()
+    variants: tuple[str, ...] = ()
+    garments: int | None = None
+
+    def study(self) -> Study:
+        """What is run."""
+        found = polyfold.load(EXPERIMENTS / f"{self.name}.toml")
+        update = {} if self.garments is None else {"garments": self.garments}
+        if self.variants:
+            update["variants"] = {name: found.variants[name] for name in self.variants}
+        return found.model_copy(update=update)
+
+    def run(self, folder: Path, workers: int) -> dict[str, str]:
+        """Run what is missing; returns the text of each file of results by name."""
+        results = polyfold.run(self.study(), folder / self.name, workers)
+        files = {f"{self.name}.md": self.sections, **dict(self.also)}
+        return {name: _text(sections(results)) for name, sections in files.items()}
+
+
+def _text(sections: Sequence[Section]) -> str:
+    return "\n\n".join(f"{heading}\n\n{text}" if heading else text for heading, text in sections) + "\n"
+
+
+def _table(results: Results) -> Sequence[Section]:
+    return [("", polyfold.table(results).markdown())]
+
+
+def _by_wording(results: Results) -> Sequence[Section]:
+    """What was never tuned on first."""
+    return [
+        ("Wordings that nothing was tuned on:", polyfold.table(results.of_wordings("unseen")).markdown()),
+        ("All wordings:", polyfold.table(results).markdown()),
+        ("By wording:", polyfold.table(results, groups="wording").markdown()),
+    ]
+
+
+def _pairs(*pairs: tuple[str, str]) -> Callable[[Results], Sequence[Section]]:
+    """Paired differences: variant and baseline."""
+    return lambda results: [("", polyfold.compare(results, *pair).markdown()) for pair in pairs]
+
+
+def _main(results: Results) -> Sequence[Section]:
+    return [
+        *_by_wording(results),
+        ("By type of task:", polyfold.table(results, groups="type").markdown()),
+        ("What the sentence costs, and what the picks do:", ""),
+        *_pairs(("polyfold", "true-lines"), ("true-lines", "oracle"))(results),
+    ]
+
+
+def _several_folds(results: Results) -> Sequence[Section]:
+    """Tasks of several folds, told only the final goal, which is all that ``polyfold`` is ever told."""
+    multi = results.of_length("multi")
+    return [
+        ("Wordings that nothing was tuned on:", _split(multi.of_wordings("unseen"))),
+        ("All wordings:", _split(multi)),
+    ]
+
+
+def _split(results: Results) -> str:
+    return polyfold.table(results, groups="split").markdown()
+
+
+def _recovery(results: Results) -> Sequence[Section]:
+    faults = ("clean", "misses", "slips")
+    return [*_table(results), *_pairs(*((fault, f"{fault}, no recovery") for fault in faults))(results)]
+
+
+def _displaced(results: Results) -> Sequence[Section]:
+    return [*_table(results), *_pairs(("displaced", "displaced, no recovery"), ("displaced", "clean"))(results)]
+
+
+def _planners(results: Results) -> Sequence[Section]:
+    others = ("direct-2arm", "direct-1arm")
+    return [*_by_wording(results), *_pairs(*(("hierarchical", other) for other in others))(results)]
+
+
+def _groundings(results: Results) -> Sequence[Section]:
+    return [*_by_wording(results), *_pairs(("polygon", "keypoints"))(results)]
+
+
+def _policies(results: Results) -> Sequence[Section]:
+    others = [name for name in results.study.variants if name != "caso"]
+    return [*_table(results), *_pairs(*(("caso", other) for other in others))(results)]
+
+
+STUDIES = (
+    StudyStep("main", 1.2, _main, also=(("final_goal.md", _several_folds),)),
+    StudyStep("noise_floor", 0.1, lambda results: [("", polyfold.table(results, noise=results).markdown())]),
+    StudyStep("recovery", 0.4, _recovery),
+    StudyStep("policies", 0.4, _policies, variants=("caso", "farthest", "vertex-random"), garments=10),
+    StudyStep("displaced", 0.2, _displaced),
+    StudyStep("ambiguous", 0.2, _table),
+    StudyStep("planners", 0.5, _planners),
+    StudyStep("groundings", 0.4, _groundings),
+    StudyStep("floor", 0.6, _table),
+)
+"""In the order in which they are run. Rows of learned policies wait for weights trained in cloth of today's fabrics."""

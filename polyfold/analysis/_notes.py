@@ -1,0 +1,128 @@
+"""What stands below a table: what is compared with what, who answered, which sentences and fabrics, at which commit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from polyfold.analysis._columns import Column, columns_of
+from polyfold.analysis._results import Results
+from polyfold.config import Experiment
+from polyfold.logs import StudyEpisodeRecord
+
+REFERENCES = {
+    "oracle": "the oracle from the same start",
+    "ideal": "the flat garment folded geometrically along the task's lines, as thick as its fabric",
+}
+"""What results are compared with, in words."""
+
+INTERVAL = "95 % interval for other sentences and garments"
+
+ORACLE = "oracle"
+"""The agent that shows which tasks are fit to judge others by."""
+
+NAMED = 4
+"""So many unfit tasks are named."""
+
+
+def about(results: Results) -> str:
+    """What a reader must know of a table of means before the figures mean anything."""
+    study = results.study
+    parts = [f"{study.name}: mean [{INTERVAL}]; reference: {REFERENCES[study.reference]}"]
+    return ". ".join([*parts, *filter(None, (_unfit(results), _made_with(results)))]) + "." + remarks(results)
+
+
+def remarks(results: Results) -> str:
+    """What a reader of any table must know of how its episodes came about."""
+    note = ""
+    if any(record.steps_wanted is None for record in results.records):
+        note += " Goals: the nearest task that each accepts; success includes those that are done by their own bounds."
+    if any(record.privileged for record in results.records):
+        note += " * privileged: sees more than the camera."
+    for change in results.run.changes:
+        note += f" Went on after {change.episodes} episodes with a change: {'; '.join(change.differences)}."
+    return note
+
+
+def noise_floor(noise: Results) -> str:
+    """How far episodes differ that differ in nothing that matters, as a sentence.
+
+    Args:
+        noise: a study whose variants have their particles and contacts in other orders.
+    """
+    first, *others = noise.study.variants
+    known = {_place(record): record for record in noise.of(first)}
+    pairs = [(known[_place(r)], r) for name in others for r in noise.of(name) if _place(r) in known]
+    columns = ", ".join(f"{column.heading} {_apart(column, pairs)}" for column in columns_of(noise.run))
+    same = f"the same folds with particles and contacts in another order (n={len(pairs)})"
+    return f"Noise floor: {same} differ by {columns}."
+
+
+def _place(record: StudyEpisodeRecord) -> tuple[str | None, str, int | None, int]:
+    return record.task, record.garment.kind, record.garment.seed, record.wording
+
+
+def _apart(column: Column, pairs: Sequence[tuple[StudyEpisodeRecord, StudyEpisodeRecord]]) -> str:
+    """The mean absolute difference between two episodes."""
+    values = [(column.value(one), column.value(other)) for one, other in pairs]
+    known = [abs(a - b) for a, b in values if a is not None and b is not None]
+    return f"{math.fsum(known) / len(known):.{column.digits}f}" if known else "–"
+
+
+def _unfit(results: Results) -> str:
+    """On which tasks and garments the oracle itself misses the reference, if it was asked."""
+    asked = [record for record in results.records if record.agent == ORACLE]
+    if not asked or results.study.reference == ORACLE:
+        return ""
+    counts = []
+    for criterion in results.run.criteria:
+        missed = [record for record in asked if not record.success[criterion]]
+        places = [f"{record.task} on garment {record.garment.seed}" for record in missed]
+        more = f" and {len(places) - NAMED} more" if len(places) > NAMED else ""
+        which = f" ({', '.join(places[:NAMED])}{more})" if places else ""
+        counts.append(f"{len(missed)} {criterion}{which}")
+    return f"Unfit to judge by, since the oracle misses the reference there, of {len(asked)}: {'; '.join(counts)}"
+
+
+def _made_with(results: Results) -> str:
+    """Who answered, on which sentences and fabrics, at which commit."""
+    found = [_answered(results), _wordings(results.records), _fabrics(results), _commit(results)]
+    said = "; ".join(part for part in found if part)
+    return said[:1].upper() + said[1:]
+
+
+def _answered(results: Results) -> str:
+    names: dict[str, str] = {}
+    for variant, components in results.run.components.items():
+        spec = components.get("llm")
+        if spec is not None and variant in results.study.variants:
+            name = spec.name
+            names[variant] = f"{name} (offline, no language model)" if name == Experiment().llm.name else name
+    if not names:
+        return ""
+    if len(set(names.values())) == 1:
+        return f"sentences answered by {next(iter(names.values()))}"
+    return "sentences answered by " + ", ".join(f"{name} in {variant}" for variant, name in names.items())
+
+
+def _wordings(records: Iterable[StudyEpisodeRecord]) -> str:
+    """Which of the tasks' sentences were said, and which of them nothing was tuned on."""
+    said = {record.wording: record.wording_unseen for record in records if record.instruction}
+    if len(said) < 2 and not any(said.values()):
+        return ""
+    unseen = [str(number) for number, held_out in sorted(said.items()) if held_out]
+    shown = ", ".join(map(str, sorted(said)))
+    return f"wordings {shown}" + (f", of which nothing was tuned on {', '.join(unseen)}" if unseen else "")
+
+
+def _fabrics(results: Results) -> str:
+    found = dict.fromkeys(r.garment.fabric.name for r in results.records if r.garment.fabric is not None)
+    return f"fabrics {', '.join(sorted(found))}" if found else ""
+
+
+def _commit(results: Results) -> str:
+    known = results.run.fingerprint
+    if known is None or not known.git:
+        return ""
+    state = next(iter(known.git.values()))
+    return f"commit {state.commit[:7]}" + (" with changes" if state.dirty else "")
