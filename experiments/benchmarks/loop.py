@@ -132,7 +132,7 @@ def _episode(job: Job, agent: str, seed: int, policy: str) -> JobRecord:
 def table(records: Sequence[JobRecord]) -> str:
     """The results as a markdown table, a row per job and agent."""
     lines = [
-        "| job | agent | n | IoU, mean | lowest | good | moved part, mean [mm] | quality | failures | seconds an episode |",
+        "| job | agent | n | IoU, mean | lowest | good | moved part [mm] | quality | failures | seconds an episode |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for job, agent, rows in _groups(records):

@@ -54,7 +54,7 @@ def test_edges_that_do_not_meet_cost(scene, millimetres, least, most):
 
 def test_loft_a_pleat_and_a_smaller_outline_cost(scene):
     ideal = scene[1]
-    lofted = moved(ideal, ideal.end.positions + [0.0, 0.0, 0.01])
+    lofted = moved(ideal, ideal.end.positions + np.array([0.0, 0.0, 0.01]))
     pleated = ideal.end.positions.copy()
     middle = ideal.start.positions[:, 1].mean()
     across = np.abs(ideal.start.positions[:, 1] - middle) < 0.03
@@ -66,6 +66,6 @@ def test_loft_a_pleat_and_a_smaller_outline_cost(scene):
 
 def test_where_it_lies_costs_nothing_if_aligned(scene):
     ideal = scene[1]
-    away = moved(ideal, ideal.end.positions + [0.1, 0.0, 0.0])
+    away = moved(ideal, ideal.end.positions + np.array([0.1, 0.0, 0.0]))
     assert quality(away, ideal) == 0.0
     assert quality(away, ideal, align=True) == pytest.approx(100.0)

@@ -1,0 +1,51 @@
+"""A table says what its figures are worth: who answered, on which sentences, and which tasks are no measure."""
+
+import pytest
+
+import polyfold
+from polyfold.errors import ConfigError
+
+SETTINGS = {"tasks": ("square-corner-*", "square-triangle-top_left"), "first_seed": 2000, "edge_length": 0.03}
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    base = polyfold.Study(name="notes", instructions="all", **SETTINGS)
+    study = polyfold.ablate(base, "agent", ["polyfold", "oracle"])
+    return polyfold.run(study, tmp_path_factory.mktemp("notes"), progress=False)
+
+
+def test_a_table_names_what_answered_the_wordings_the_fabric_and_the_commit(results):
+    note = polyfold.table(results).note
+    assert "folded geometrically" in note
+    assert "answered by rules (offline, no language model)" in note
+    assert "wordings 0, 1, 2, 3, 4, of which nothing was tuned on 3, 4" in note
+    assert "fabrics poplin" in note
+
+
+def test_wordings_that_nothing_was_tuned_on_can_be_had_alone_and_lead(results):
+    unseen, seen = results.of_wordings("unseen"), results.of_wordings("seen")
+    assert {record.wording for record in unseen.records} == {3, 4}
+    assert len(unseen.records) + len(seen.records) == len(results.records)
+    groups = [row[1] for row in polyfold.table(results, groups="wording").rows if row[0] == "polyfold"]
+    assert groups == ["3, unseen", "4, unseen", "0", "1", "2", "all"]
+    with pytest.raises(ConfigError, match="seen or unseen"):
+        results.of_wordings("new")
+
+
+def test_a_suite_that_says_nothing_of_its_wordings_has_none_that_are_unseen(results, tmp_path):
+    study = polyfold.Study(name="goals", suite="ambiguous", tasks=("napkin-smaller-square",), edge_length=0.03)
+    other = polyfold.run(study, tmp_path, progress=False)
+    with pytest.raises(ConfigError, match="doesn't say which wordings"):
+        other.of_wordings("unseen")
+    assert "tuned on" not in polyfold.table(other).note
+
+
+def test_tasks_that_the_oracle_misses_are_counted_and_named(results):
+    """At 30 mm a corner's crease takes up much of its flap."""
+    missed = [record for record in results.of("oracle") if not record.success["strict"]]
+    note = polyfold.table(results).note
+    count = f"of {len(results.of('oracle'))}: 0 lenient; {len(missed)} strict"
+    assert f"Unfit to judge by, since the oracle misses the reference there, {count}" in note
+    assert all(f"{record.task} on garment 2000" in note for record in missed[:4])
+    assert "Unfit" not in polyfold.table(polyfold.analysis.Results(results.run, results.of("polyfold"))).note
