@@ -110,9 +110,11 @@ def _wordings(records: Iterable[StudyEpisodeRecord]) -> str:
     said = {record.wording: record.wording_unseen for record in records if record.instruction}
     if len(said) < 2 and not any(said.values()):
         return ""
+    shown = f"wordings {', '.join(map(str, sorted(said)))}"
     unseen = [str(number) for number, held_out in sorted(said.items()) if held_out]
-    shown = ", ".join(map(str, sorted(said)))
-    return f"wordings {shown}" + (f", of which nothing was tuned on {', '.join(unseen)}" if unseen else "")
+    if len(unseen) == len(said):
+        return f"{shown}, on which nothing was tuned"
+    return f"{shown}, of which nothing was tuned on {', '.join(unseen)}" if unseen else shown
 
 
 def _fabrics(results: Results) -> str:
