@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from polyfold.analysis._differences import difference, share_difference
 from polyfold.analysis._intervals import Estimate, Labels, mean, share
@@ -34,7 +34,10 @@ class Column:
         values = [self.value(record) for record in records]
         if self.is_success:
             return share([None if value is None else value > 0 for value in values], *shared(records))
-        return mean(values, *shared(records))
+        found = mean(values, *shared(records))
+        # A metric that is never negative, such as an error, has no negative mean.
+        negative = any(value is not None and value < 0 for value in values)
+        return found if negative else replace(found, low=max(found.low, 0.0))
 
     def between(self, ours: Sequence[StudyEpisodeRecord], theirs: Sequence[StudyEpisodeRecord]) -> Estimate:
         """Mean difference, ours − theirs, over the same episodes in the same order."""

@@ -86,9 +86,6 @@ def ratio(totals: Sequence[float | None], counts: Sequence[float], *clusters: La
     value = _total(numerators) / count
     found = spread((numerators - value * denominators) / count, *codes_of(clusters, known))
     low, high = _studentised(value, found)
-    # What is never negative, such as an error or a time, has no negative mean.
-    if (numerators >= 0.0).all():
-        low = max(low, 0.0)
     return Estimate(value, low, high, len(numerators))
 
 

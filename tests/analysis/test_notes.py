@@ -3,6 +3,7 @@
 import pytest
 
 import polyfold
+from polyfold.analysis._columns import columns_of
 from polyfold.errors import ConfigError
 
 SETTINGS = {"tasks": ("square-corner-*", "square-triangle-top_left"), "first_seed": 2000, "edge_length": 0.03}
@@ -50,3 +51,13 @@ def test_tasks_that_the_oracle_misses_are_counted_and_named(results):
     assert f"Unfit to judge by, since the oracle misses the reference there, {count}" in note
     assert all(f"{record.task} on garment 2000" in note for record in missed[:4])
     assert "Unfit" not in polyfold.table(polyfold.analysis.Results(results.run, results.of("polyfold"))).note
+
+
+def test_the_mean_of_an_error_has_no_negative_interval(results):
+    """Few garments, some of which fail badly: symmetric about the mean, the interval would reach below 0."""
+    column = next(column for column in columns_of(results.run) if column.heading == "MPPE [mm]")
+    records = results.of("polyfold")
+    errors = [0.1] * (len(records) - 1) + [90.0]
+    made = [r.model_copy(update={"metrics": {"mppe": e}}) for r, e in zip(records, errors, strict=True)]
+    assert column.over(made).low == 0.0
+    assert column.between(made, made[::-1]).low < 0
