@@ -92,11 +92,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
     path = options.out / "folds.jsonl"
-    rows = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+    rows = _read(path)
     contenders = [c for c in CONTENDERS if importlib.util.find_spec(c.package) is not None]
     for missing in sorted({c.package for c in CONTENDERS} - {c.package for c in contenders}):
         print(f"skipped: {missing} isn't installed", file=sys.stderr)
-    with path.open("a") as file:
+    with path.open("w") as file:
+        file.writelines(json.dumps(row) + "\n" for row in rows)
+        file.flush()
         for row in _measured(rows, contenders, range(options.seed, options.seed + options.garments), options.patience):
             file.write(json.dumps(row) + "\n")
             file.flush()
@@ -104,6 +106,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     names = [name for name, _ in _titles()]
     order = [OURS, *(c.name for c in CONTENDERS)]
     print(table(sorted(rows, key=lambda row: (names.index(row["fold"]), order.index(row["engine"]), row["seed"]))))
+
+
+def _read(path: Path) -> list[dict[str, Any]]:
+    """Rows of a run before, without a last line that was cut off."""
+    text = path.read_text() if path.exists() else ""
+    return [json.loads(line) for line in text.splitlines(keepends=True) if line.endswith("\n")]
 
 
 def _titles() -> list[tuple[str, tuple[Script, float]]]:

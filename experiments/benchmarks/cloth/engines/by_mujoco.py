@@ -38,8 +38,12 @@ def drape(job: Job) -> tuple[Floats, float]:
     def release() -> None:
         data.eq_active[:] = 0
 
+    mujoco.set_mju_user_warning(print)  # else they go to a file in the current folder
     seconds = job.play(STEP, hold, lambda: mujoco.mj_step(model, data), release)
-    return data.flexvert_xpos.copy(), seconds
+    bad = mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC
+    # MuJoCo starts anew where a state is not finite any more, which would pass for cloth that was never folded.
+    exploded = any(data.warning[kind].number for kind in bad)
+    return np.full_like(data.flexvert_xpos, np.nan) if exploded else data.flexvert_xpos.copy(), seconds
 
 
 def _scene(job: Job) -> str:

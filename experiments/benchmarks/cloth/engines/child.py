@@ -23,7 +23,7 @@ def in_child(fold: Engine, job: Job) -> tuple[Floats | None, float, str]:
     try:
         if receiver.poll(WAIT):
             return receiver.recv()
-        return None, job.limit, f"gave up after {WAIT:.0f} s"
+        return None, job.limit, f"gave up after {WAIT:.0f} s of waiting"
     except EOFError:
         return None, 0.0, "crashed"
     finally:
