@@ -121,10 +121,10 @@ def _titles() -> list[tuple[str, tuple[Script, float]]]:
 def _measured(
     rows: list[dict[str, Any]], contenders: Sequence[Contender], seeds: Sequence[int], patience: float
 ) -> Iterator[dict[str, Any]]:
-    """Rows that are still missing; a garment of every kind with all engines before the next garment."""
+    """Rows that are still missing, the quickest fold first; all engines on a garment before the next garment."""
     known = {(row["fold"], row["engine"], row["seed"]) for row in rows}
-    for seed in seeds:
-        for title, (script, edge) in _titles():
+    for title, (script, edge) in _titles():
+        for seed in seeds:
             missing = [c for c in contenders if (title, c.name, seed) not in known and not _hopeless(rows, title, c)]
             if not missing and (title, OURS, seed) in known:
                 continue
