@@ -96,9 +96,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     contenders = [c for c in CONTENDERS if importlib.util.find_spec(c.package) is not None]
     for missing in sorted({c.package for c in CONTENDERS} - {c.package for c in contenders}):
         print(f"skipped: {missing} isn't installed", file=sys.stderr)
-    with path.open("w") as file:
-        file.writelines(json.dumps(row) + "\n" for row in rows)
-        file.flush()
+    with path.open("a") as file:
         for row in _measured(rows, contenders, range(options.seed, options.seed + options.garments), options.patience):
             file.write(json.dumps(row) + "\n")
             file.flush()
@@ -109,9 +107,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _read(path: Path) -> list[dict[str, Any]]:
-    """Rows of a run before, without a last line that was cut off."""
+    """Rows of a run before; a last line that was cut off is taken out of the file."""
     text = path.read_text() if path.exists() else ""
-    return [json.loads(line) for line in text.splitlines(keepends=True) if line.endswith("\n")]
+    whole = text[: text.rfind("\n") + 1]
+    if whole != text:
+        path.write_text(whole)
+    return [json.loads(line) for line in whole.splitlines()]
 
 
 def _titles() -> list[tuple[str, tuple[Script, float]]]:
