@@ -1,0 +1,1 @@
+"""Half folds in our simulator and in other engines, side by side."""
