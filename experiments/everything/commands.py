@@ -59,7 +59,7 @@ COMMANDS = (
         "loop",
         0.5,
         (
-            ("loop", "--n", "20", "--out", "{out}"),
+            ("loop", "--agent", "polyfold", "--agent", "noop", "--n", "20", "--out", "{out}"),
             ("loop", "--agent", "polyfold", "--n", "20", "--first-seed", "600", "--out", "{out}"),
         ),
         headings=("Garments 0–19:", ONCE),

@@ -12,6 +12,7 @@ SMALL = {
     "garments": 2,
     "first_seed": 2000,
     "edge_length": 0.03,
+    "reference": "oracle",
 }
 EPISODE = ["start", "step", "end"]
 

@@ -23,7 +23,8 @@ def references(tmp_path, monkeypatch):
 
 
 def test_fabric_is_an_axis_and_every_record_says_what_lay_on_the_table(tmp_path, references):
-    study = polyfold.ablate(polyfold.Study(**SMALL, base={"agent": "oracle"}), "fabric", ["jersey", "denim"])
+    base = polyfold.Study(**SMALL, reference="oracle", base={"agent": "oracle"})
+    study = polyfold.ablate(base, "fabric", ["jersey", "denim"])
     results = polyfold.run(study, tmp_path / "run", progress=False)
     fabrics = {record.variant: record.garment.fabric for record in results.records}
     assert {variant: fabric.name for variant, fabric in fabrics.items()} == {"jersey": "jersey", "denim": "denim"}

@@ -51,7 +51,7 @@ def _registered(tmp_path_factory, monkeypatch):
 
 
 def run(out, *policies, pictures="all"):
-    study = polyfold.Study(**SMALL, base={"agent": "oracle"})
+    study = polyfold.Study(**SMALL, base={"agent": "fold-lines"})
     return polyfold.run(
         polyfold.ablate(study, "policy", list(policies)), out, pictures=pictures, progress=False
     ).records

@@ -28,7 +28,7 @@ def _own_cache(tmp_path_factory, monkeypatch):
 
 @pytest.fixture
 def study():
-    return polyfold.ablate(polyfold.Study(**SMALL), "agent", ["oracle", "noop"])
+    return polyfold.ablate(polyfold.Study(**SMALL), "agent", ["fold-lines", "noop"])
 
 
 def pictured(records):
@@ -42,7 +42,7 @@ def rendered(study, out, **options):
 
 def test_failures_and_the_first_garment_are_pictured_unless_asked_otherwise(study, tmp_path):
     default = rendered(study, tmp_path / "default", progress=False)
-    assert pictured(default) == {("oracle", 2000), ("noop", 2000), ("noop", 2001)}
+    assert pictured(default) == {("fold-lines", 2000), ("noop", 2000), ("noop", 2001)}
     for record in default:
         if record.picture:
             path = tmp_path / "default" / record.picture
