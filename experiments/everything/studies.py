@@ -77,7 +77,6 @@ def _main(results: Results) -> Sequence[Section]:
     return [
         *_by_wording(results),
         ("By type of task:", polyfold.table(results, groups="type").markdown()),
-        ("What the sentence costs, and what the picks do:", ""),
         *_pairs(("polyfold", "true-lines"), ("true-lines", "oracle"))(results),
     ]
 
