@@ -53,8 +53,8 @@ def _finish(step: StudyStep | CommandStep, chosen: argparse.Namespace) -> None:
         files = step.run(chosen.out, chosen.data)
     else:
         files = step.run(chosen.out, chosen.workers)
-    for name, text in files.items():
-        (chosen.into / name).write_text(text, encoding="utf-8")
+    for name, content in files.items():
+        (chosen.into / name).write_bytes(content)
     _mark(chosen.out, step.name).write_text(f"{(time.monotonic() - began) / 3600:.2f} hours\n", encoding="utf-8")
 
 

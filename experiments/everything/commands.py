@@ -39,8 +39,8 @@ class CommandStep:
             return f"pip install {' '.join(missing)}"
         return "--data DIR, the outlines of aRTF Clothes" if self.needs_data and data is None else ""
 
-    def run(self, folder: Path, data: Path | None) -> dict[str, str]:
-        """Run every command; returns the text of its file of results by name."""
+    def run(self, folder: Path, data: Path | None) -> dict[str, bytes]:
+        """Run every command; returns the content of its file of results by name."""
         texts = []
         for number, (module, *arguments) in enumerate(self.commands):
             own = folder / f"{self.name}-{number}"
@@ -49,7 +49,7 @@ class CommandStep:
             printed = subprocess.run(command, stdout=subprocess.PIPE, text=True, encoding="utf-8", check=True).stdout
             heading = f"{self.headings[number]}\n\n" if self.headings else ""
             texts.append(f"{heading}{printed.strip()}\n")
-        return {f"{self.name}.md": "\n".join(texts)}
+        return {f"{self.name}.md": "\n".join(texts).encode()}
 
 
 ONCE = "Garments 600–619, folded once, after everything else was settled:"

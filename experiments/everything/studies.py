@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import polyfold
+from experiments.everything.pictures import failures
 from polyfold.analysis import Results
 from polyfold.studies import Study
 
@@ -25,6 +26,7 @@ class StudyStep:
         hours: of two cores.
         sections: what its file of results holds.
         also: further files of results made of the same episodes.
+        pictured: whether ``results/NAME-failures.png`` shows what was folded wrongly.
         variants: only these; all if empty.
         garments: instead of the study's own number.
     """
@@ -33,6 +35,7 @@ class StudyStep:
     hours: float
     sections: Callable[[Results], Sequence[Section]]
     also: tuple[tuple[str, Callable[[Results], Sequence[Section]]], ...] = ()
+    pictured: bool = False
     variants: tuple[str, ...] = ()
     garments: int | None = None
 
@@ -44,11 +47,12 @@ class StudyStep:
             update["variants"] = {name: found.variants[name] for name in self.variants}
         return found.model_copy(update=update)
 
-    def run(self, folder: Path, workers: int) -> dict[str, str]:
-        """Run what is missing; returns the text of each file of results by name."""
+    def run(self, folder: Path, workers: int) -> dict[str, bytes]:
+        """Run what is missing; returns the content of each file of results by name."""
         results = polyfold.run(self.study(), folder / self.name, workers)
         files = {f"{self.name}.md": self.sections, **dict(self.also)}
-        return {name: _text(sections(results)) for name, sections in files.items()}
+        found = {name: _text(sections(results)).encode() for name, sections in files.items()}
+        return found | ({f"{self.name}-failures.png": failures(results, folder / self.name)} if self.pictured else {})
 
 
 def _text(sections: Sequence[Section]) -> str:
@@ -118,7 +122,7 @@ def _policies(results: Results) -> Sequence[Section]:
 
 
 STUDIES = (
-    StudyStep("main", 1.2, _main, also=(("final_goal.md", _several_folds),)),
+    StudyStep("main", 1.2, _main, also=(("final_goal.md", _several_folds),), pictured=True),
     StudyStep("noise_floor", 0.1, lambda results: [("", polyfold.table(results, noise=results).markdown())]),
     StudyStep("recovery", 0.4, _recovery),
     StudyStep("policies", 0.4, _policies, variants=("caso", "farthest", "vertex-random"), garments=10),
