@@ -30,7 +30,8 @@ class Watcher:
         self.events.append((role, "start"))
 
     def on_step(self, step, role):
-        self.events.append((role, "step"))
+        if not step.retry:  # the oracle may need several tries
+            self.events.append((role, "step"))
 
     def on_episode_end(self, episode, role):
         self.events.append((role, "end" if episode.failure is None else episode.failure.stage))
