@@ -26,6 +26,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--data", type=Path, metavar="DIR", help="outlines of real garments (aRTF Clothes)")
     parser.add_argument("--only", nargs="+", choices=names, metavar="STEP", help="only these steps")
     parser.add_argument("--again", nargs="+", choices=names, default=[], metavar="STEP", help="finished, but once more")
+    parser.add_argument("--accept-change", action="store_true", help="go on with studies begun with other code")
     parser.add_argument("--list", action="store_true", help="print the steps with their hours, and run nothing")
     chosen = parser.parse_args(arguments)
     steps = [step for step in STEPS if chosen.only is None or step.name in chosen.only]
@@ -52,7 +53,7 @@ def _finish(step: StudyStep | CommandStep, chosen: argparse.Namespace) -> None:
             return
         files = step.run(chosen.out, chosen.data)
     else:
-        files = step.run(chosen.out, chosen.workers)
+        files = step.run(chosen.out, chosen.workers, chosen.accept_change)
     for name, content in files.items():
         (chosen.into / name).write_bytes(content)
     _mark(chosen.out, step.name).write_text(f"{(time.monotonic() - began) / 3600:.2f} hours\n", encoding="utf-8")

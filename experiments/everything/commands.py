@@ -52,7 +52,7 @@ class CommandStep:
         return {f"{self.name}.md": "\n".join(texts).encode()}
 
 
-ONCE = "Garments 600–619, folded once, after everything else was settled:"
+ONCE = "Garments 600–619, never looked at while anything was tuned:"
 
 COMMANDS = (
     CommandStep(

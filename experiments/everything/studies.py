@@ -47,9 +47,9 @@ class StudyStep:
             update["variants"] = {name: found.variants[name] for name in self.variants}
         return found.model_copy(update=update)
 
-    def run(self, folder: Path, workers: int) -> dict[str, bytes]:
+    def run(self, folder: Path, workers: int, accept_change: bool) -> dict[str, bytes]:
         """Run what is missing; returns the content of each file of results by name."""
-        results = polyfold.run(self.study(), folder / self.name, workers)
+        results = polyfold.run(self.study(), folder / self.name, workers, accept_change=accept_change)
         files = {f"{self.name}.md": self.sections, **dict(self.also)}
         found = {name: _text(sections(results)).encode() for name, sections in files.items()}
         return found | ({f"{self.name}-failures.png": failures(results, folder / self.name)} if self.pictured else {})
