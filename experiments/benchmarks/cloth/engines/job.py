@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 REACH, HEIGHT, CLEARANCE = 0.015, 0.45, 0.004
 """Radius of a grasp [m], height of the path as a share of its width, gap below the flap when it is let go [m]."""
-SPEED, RAMP, SETTLING = 0.5, 0.15, 0.6
+SPEED, RAMP, SETTLING = 0.7, 0.15, 0.6
 """Speed of the gripper [m/s], time to reach it [s], time to come to rest [s]. Speed and ramp are our simulator's."""
 
 
