@@ -46,6 +46,7 @@ def _finish(step: StudyStep | CommandStep, chosen: argparse.Namespace) -> None:
     """Run a step to its end and write its tables; only then is it marked as finished."""
     began = time.monotonic()
     chosen.out.mkdir(parents=True, exist_ok=True)
+    chosen.into.mkdir(parents=True, exist_ok=True)
     if isinstance(step, CommandStep):
         missing = step.lacks(chosen.data)
         if missing:

@@ -71,7 +71,7 @@ def _apart(column: Column, pairs: Sequence[tuple[StudyEpisodeRecord, StudyEpisod
 
 def _unfit(results: Results) -> str:
     """On which tasks and garments the oracle itself misses the reference, if it was asked."""
-    asked = [record for record in results.records if record.agent == ORACLE]
+    asked = [record for record in results.records if record.agent == ORACLE and record.compared]
     if not asked or results.study.reference == ORACLE:
         return ""
     counts = []

@@ -20,8 +20,9 @@ from polyfold.tasks._lines import recognise
 from polyfold.types import Episode, Observation, Outcome
 from polyfold.types._fidelity import Reference, Verdict
 
-VERDICTS: Sequence[tuple[Verdict, str]] = (("good", "strict"), ("fair", "lenient"))
-"""Verdicts and the criteria that earn them, the best first."""
+VERDICTS: Sequence[tuple[Verdict, str, float]] = (("good", "strict", 70.0), ("fair", "lenient", 40.0))
+"""Verdicts with the criteria that earn them and the quality that they need besides, the best first: what is crumpled,
+or whose edges hang back, may keep within the bounds on means."""
 
 QUALITY = "quality"
 """The metric of graded quality."""
@@ -54,14 +55,14 @@ def judge(episode: Episode, task_id: str | None = None) -> Episode:
     kind = episode.garment.kind
     if task_id is not None:
         return _beside(episode, find_task(task_id, kind), "task")
-    if not episode.steps:
-        return episode
     tasks = known_tasks(kind)
     asked = [task for task in tasks if _plain(episode.instruction) in map(_plain, task.instructions)]
     if asked:
         # A sentence may ask for several tasks alike, such as those that differ in what goes first.
         judged = [_beside(episode, task, "sentence") for task in asked]
         return min(judged, key=_rank)
+    if not episode.steps:
+        return episode
     planned = [step.fold_line for step in episode.final_attempts() if step.fold_line is not None]
     recognised = recognise(tasks, episode.initial_state.keypoint_pixels(), planned)
     if recognised is not None:
@@ -77,7 +78,7 @@ def _plain(sentence: str) -> str:
 def _rank(episode: Episode) -> tuple[int, float]:
     """Sorts judged episodes, the best first."""
     assert episode.fidelity is not None
-    verdicts = [verdict for verdict, _ in VERDICTS]
+    verdicts = [verdict for verdict, *_ in VERDICTS]
     verdict = episode.fidelity.verdict
     return verdicts.index(verdict) if verdict in verdicts else len(verdicts), -episode.fidelity.iou
 
@@ -93,16 +94,19 @@ def _compared(episode: Episode, lines: Sequence[FoldLine], reference: Reference)
     found = fidelity(mask, episode.final_state, flat, episode.garment, lines, reference)
     ideal = fold_ideally(flat, episode.garment, lines).outcome(flat, mesh)
     end = Outcome(flat, episode.final_state, mask, mesh)
-    found = replace(found, verdict=_verdict(end, ideal), quality=_quality(end, ideal))
+    quality = _quality(end, ideal)
+    found = replace(found, verdict=_verdict(end, ideal, quality), quality=quality)
     return replace(episode, fidelity=found, ideal_lines=tuple(lines))
 
 
-def _verdict(end: Outcome, ideal: Outcome) -> Verdict | None:
+def _verdict(end: Outcome, ideal: Outcome, quality: float) -> Verdict | None:
     """The best verdict that the end earns; None where a criterion is not installed."""
     known = plugins.names("criteria")
-    if any(name not in known for _, name in VERDICTS):
+    if any(name not in known for _, name, _ in VERDICTS):
         return None
-    for verdict, name in VERDICTS:
+    for verdict, name, least in VERDICTS:
+        if quality < least:
+            continue
         bounds = criteria([name])[name]
         if succeeded({bound.metric: _value(bound.metric, end, ideal) for bound in bounds}, bounds):
             return verdict

@@ -24,8 +24,8 @@ class Fidelity:
         moved: how many particles that are.
         reference: who says which fold was wanted. With ``recognised`` and ``self-referenced`` nobody does: then a wrong
             plan that is executed well scores well.
-        verdict: ``good`` within the strict criterion, ``fair`` within the lenient one, else ``bad``; None where they
-            are not installed.
+        verdict: ``good`` within the strict criterion and of quality 70 or more, ``fair`` within the lenient one and of
+            40 or more, else ``bad``; None where they are not installed.
         quality: graded, 0 to 100; NaN where that metric is not installed.
     """
 

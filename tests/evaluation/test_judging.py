@@ -87,7 +87,19 @@ def test_a_line_of_nobodys_gets_no_praise_however_neat_the_fold():
 
 
 def test_where_no_criterion_is_installed_nothing_is_claimed(monkeypatch):
-    monkeypatch.setattr("polyfold.evaluation._judging.VERDICTS", (("good", "none-such"),))
+    monkeypatch.setattr("polyfold.evaluation._judging.VERDICTS", (("good", "none-such", 0.0),))
     episode = folded(sentence_of("square-triangle-top_left", "square"), ("bottom_left", "top_right"))
     assert episode.fidelity.verdict is None
     assert said(episode).startswith("compared: ")
+
+
+def test_what_was_asked_for_and_not_done_is_bad():
+    cloth = polyfold.garment("square", seed=2000, edge_length=0.02)
+    sentence = sentence_of("square-triangle-top_left", "square")
+    assert said(polyfold.fold(sentence, cloth, seed=2000, agent="noop")).startswith("bad: ")
+
+
+def test_a_crumpled_shirt_is_not_good_though_its_means_are():
+    episode = polyfold.fold("", polyfold.garment("tshirt", seed=7), seed=7, task="tshirt-half-left", agent="fold-lines")
+    assert episode.fidelity.quality < 70
+    assert not said(episode).startswith("good")
