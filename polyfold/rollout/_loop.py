@@ -143,6 +143,9 @@ class _Rollout:
         decision = self._agent.decide(self._seen)
         if decision is None:
             return False
+        if "simulator" in self._agent.requires:
+            # It may have put the cloth back to try again.
+            self._seen = self._start.simulator.observe()
         step, self._seen = _executed(self._start.simulator, decision, self._seen, len(self._steps))
         self._steps.append(step)
         for stage, spent in step.seconds.items():

@@ -40,6 +40,7 @@ def test_the_oracle_leaves_the_best_of_what_it_tried(monkeypatch):
     finally:
         plugins.unregister("policies", "one-corner")
     assert sum(step.retry for step in episode.steps) > 2, "nothing it tried was near enough"
+    assert all(np.array_equal(step.observation.rgb, episode.start.rgb) for step in episode.steps), "put back each time"
     goal = episode.ideal_lines[0].mirror(episode.initial_state.keypoint_pixels()["top_left"])
     off = [np.hypot(*(step.after.keypoint_pixels()["top_left"] - goal)) for step in episode.steps]
     assert off[-1] < off[0]
