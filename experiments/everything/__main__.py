@@ -15,6 +15,9 @@ from experiments.everything.studies import EXPERIMENTS, STUDIES, StudyStep
 
 STEPS = (*STUDIES, *COMMANDS)
 
+BY_HAND = b"<!-- by hand -->"
+"""Words below this line of a file of results stay when its tables are made again."""
+
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the steps that are not finished yet."""
@@ -56,8 +59,15 @@ def _finish(step: StudyStep | CommandStep, chosen: argparse.Namespace) -> None:
     else:
         files = step.run(chosen.out, chosen.workers, chosen.accept_change)
     for name, content in files.items():
-        (chosen.into / name).write_bytes(content)
+        path = chosen.into / name
+        path.write_bytes(content + _by_hand(path))
     _mark(chosen.out, step.name).write_text(f"{(time.monotonic() - began) / 3600:.2f} hours\n", encoding="utf-8")
+
+
+def _by_hand(path: Path) -> bytes:
+    """What was written by hand below a table, to stand below the new one too."""
+    _, mark, words = path.read_bytes().partition(BY_HAND) if path.exists() else (b"", b"", b"")
+    return b"\n" + mark + words if mark else b""
 
 
 def _mark(out: Path, name: str) -> Path:

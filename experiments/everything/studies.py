@@ -10,6 +10,7 @@ import polyfold
 from experiments.everything.pictures import failures
 from polyfold.analysis import Results
 from polyfold.studies import Study
+from polyfold.studies._study import with_variants
 
 EXPERIMENTS = Path(__file__).parents[1]
 
@@ -42,10 +43,8 @@ class StudyStep:
     def study(self) -> Study:
         """What is run."""
         found = polyfold.load(EXPERIMENTS / f"{self.name}.toml")
-        update = {} if self.garments is None else {"garments": self.garments}
-        if self.variants:
-            update["variants"] = {name: found.variants[name] for name in self.variants}
-        return found.model_copy(update=update)
+        found = with_variants(found, self.variants) if self.variants else found
+        return found if self.garments is None else found.model_copy(update={"garments": self.garments})
 
     def run(self, folder: Path, workers: int, accept_change: bool) -> dict[str, bytes]:
         """Run what is missing; returns the content of each file of results by name."""

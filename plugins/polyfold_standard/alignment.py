@@ -19,6 +19,16 @@ class Alignable(BaseModel):
     align: bool = Field(default=False, description="move and turn the result rigidly onto the reference first")
 
 
+class Aligning:
+    """A metric whose only parameter is whether to align."""
+
+    class Config(Alignable):
+        """Parameters."""
+
+    def __init__(self, config: Config | None = None) -> None:
+        self._align = (config or self.Config()).align
+
+
 def laid_onto(particles: Floats, wanted: Floats, points: Floats) -> Floats:
     """Points on the table [m], shape (M, 2), after the rigid motion of particles, shape (N, 3), onto ``wanted``."""
     centre, goal = particles[:, :2].mean(axis=0), wanted[:, :2].mean(axis=0)

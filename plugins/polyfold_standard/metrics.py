@@ -11,12 +11,12 @@ from pydantic import Field
 
 from polyfold.geometry import iou
 from polyfold.types import Outcome
-from polyfold_standard.alignment import Alignable, laid_onto
+from polyfold_standard.alignment import Alignable, Aligning, laid_onto
 
 Floats = NDArray[np.float64]
 
 
-class MPPE:
+class MPPE(Aligning):
     """Mean particle position error [mm]: mean distance of corresponding particles, best of the references."""
 
     label: ClassVar[str] = "MPPE"
@@ -24,30 +24,18 @@ class MPPE:
     unit: ClassVar[str] = "mm"
     higher_is_better: ClassVar[bool] = False
 
-    class Config(Alignable):
-        """Parameters."""
-
-    def __init__(self, config: Config | None = None) -> None:
-        self._align = (config or self.Config()).align
-
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
         """The error against the nearest reference."""
         return min(float(_errors(result, reference, self._align).mean()) for reference in references)
 
 
-class IoU:
+class IoU(Aligning):
     """IoU of the silhouettes as the camera sees them, best of the references (mIoU: its mean over episodes)."""
 
     label: ClassVar[str] = "mIoU"
     digits: ClassVar[int] = 3
     unit: ClassVar[str] = ""
     higher_is_better: ClassVar[bool] = True
-
-    class Config(Alignable):
-        """Parameters."""
-
-    def __init__(self, config: Config | None = None) -> None:
-        self._align = (config or self.Config()).align
 
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
         """The overlap with the nearest reference."""

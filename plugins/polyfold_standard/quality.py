@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from polyfold.garments import Mesh
 from polyfold.types import Outcome
-from polyfold_standard.alignment import Alignable, laid_onto
+from polyfold_standard.alignment import Aligning, laid_onto
 
 Floats = NDArray[np.float64]
 
@@ -88,19 +88,13 @@ def grade(result: Outcome, reference: Outcome, align: bool = False) -> Grades:
     )
 
 
-class Quality:
+class Quality(Aligning):
     """Graded quality, 0 to 100: edges, area, flatness and creases, best of the references."""
 
     label: ClassVar[str] = "quality"
     digits: ClassVar[int] = 0
     unit: ClassVar[str] = ""
     higher_is_better: ClassVar[bool] = True
-
-    class Config(Alignable):
-        """Parameters."""
-
-    def __init__(self, config: Config | None = None) -> None:
-        self._align = (config or self.Config()).align
 
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
         """The quality beside the nearest reference."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from polyfold.evaluation._references import Reference
 from polyfold.geometry import FoldLine
-from polyfold.tasks._ideal import fidelity
+from polyfold.tasks._ideal import fidelity, fold_ideally
 from polyfold.types import Episode, SimState, Step
 
 CAUSES = ("infrastructure", "grounding", "subgoal", "fold line", "policy", "execution")
@@ -63,9 +63,8 @@ def attribute_open(episode: Episode, mask: NDArray[np.bool_]) -> str:
     lines = [step.fold_line for step in settled if step.fold_line is not None]
     if len(lines) != len(settled):
         return "execution"
-    found = fidelity(
-        mask, episode.final_state, episode.initial_state, episode.garment, lines, reference="self-referenced"
-    )
+    planned = fold_ideally(episode.initial_state, episode.garment, lines)
+    found = fidelity(mask, episode.final_state, episode.initial_state, planned, reference="self-referenced")
     return "subgoal" if found.iou >= AS_PLANNED else "execution"
 
 

@@ -91,8 +91,9 @@ def _beside(episode: Episode, task: Task, reference: Reference) -> Episode:
 def _compared(episode: Episode, lines: Sequence[FoldLine], reference: Reference) -> Episode:
     """The episode beside the flat garment folded ideally along lines."""
     mask, flat, mesh = final_mask(episode), episode.initial_state, episode.garment.mesh
-    found = fidelity(mask, episode.final_state, flat, episode.garment, lines, reference)
-    ideal = fold_ideally(flat, episode.garment, lines).outcome(flat, mesh)
+    folded = fold_ideally(flat, episode.garment, lines)
+    found = fidelity(mask, episode.final_state, flat, folded, reference)
+    ideal = folded.outcome(flat, mesh)
     end = Outcome(flat, episode.final_state, mask, mesh)
     quality = _quality(end, ideal)
     found = replace(found, verdict=_verdict(end, ideal, quality), quality=quality)

@@ -118,8 +118,7 @@ def fidelity(
     final_mask: NDArray[np.bool_],
     final: SimState,
     flat: SimState,
-    garment: Garment,
-    lines: Sequence[FoldLine],
+    ideal: IdealFold,
     reference: Reference,
 ) -> Fidelity:
     """Compare a result with the ideal fold of the garment it started from.
@@ -128,11 +127,9 @@ def fidelity(
         final_mask: the cloth in the last picture, bool, shape (H, W).
         final: the state after the last fold.
         flat: the state before the first fold.
-        garment: the garment.
-        lines: the ideal fold lines [px].
-        reference: where the lines come from.
+        ideal: that garment folded ideally.
+        reference: who says that this was wanted.
     """
-    ideal = fold_ideally(flat, garment, lines)
     travel = np.linalg.norm(ideal.positions[:, :2] - flat.positions[:, :2], axis=1)
     moved = travel > MOVED
     error = np.linalg.norm(final.positions[moved, :2] - ideal.positions[moved, :2], axis=1)

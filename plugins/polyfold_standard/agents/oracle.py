@@ -62,8 +62,6 @@ class _Trial:
 
     def next_action(self, error: float, enough: float) -> Action | None:
         """What to do after the last try came that far from the ideal: another, the best again, or None."""
-        if self.settled:
-            return None
         self.tried.append((error, self.action))
         if error > enough and self.waiting:
             self.action = self.waiting.pop(0)
@@ -109,7 +107,7 @@ class Oracle:
 
     def decide(self, observation: Observation) -> Decision | None:
         """Another try of the last fold while none was near enough, else the next fold; None after the last."""
-        if self._trial is not None:
+        if self._trial is not None and not self._trial.settled:
             action = self._trial.next_action(self._error(self._trial.ideal, observation), self._enough)
             if action is not None:
                 self._simulator.restore(self._trial.state)
