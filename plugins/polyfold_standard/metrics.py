@@ -35,6 +35,7 @@ class IoU(Aligning):
     label: ClassVar[str] = "mIoU"
     digits: ClassVar[int] = 3
     unit: ClassVar[str] = ""
+    most: ClassVar[float] = 1.0
     higher_is_better: ClassVar[bool] = True
 
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:

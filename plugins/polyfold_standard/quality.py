@@ -94,6 +94,7 @@ class Quality(Aligning):
     label: ClassVar[str] = "quality"
     digits: ClassVar[int] = 0
     unit: ClassVar[str] = ""
+    most: ClassVar[float] = 100.0
     higher_is_better: ClassVar[bool] = True
 
     def score(self, result: Outcome, references: Sequence[Outcome]) -> float:
@@ -102,8 +103,8 @@ class Quality(Aligning):
 
 
 def _left(error: float, worst: float) -> float:
-    """What is left of a share: 1 without error, 0 from the worst on."""
-    return float(np.clip(1.0 - error / worst, 0.0, 1.0))
+    """What is left of a share: 1 without error, 0 from the worst on, and of what can't be measured."""
+    return float(np.clip(1.0 - error / worst, 0.0, 1.0)) if np.isfinite(error) else 0.0
 
 
 def _outline_off(off: Floats, reference: Outcome, mesh: Mesh) -> float:

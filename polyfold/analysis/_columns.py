@@ -21,6 +21,7 @@ class Column:
         digits: after the point.
         is_success: whether it is a share of success [%].
         value: of one episode; None where there was nothing to measure.
+        most: the largest value that there can be; None if there is none.
     """
 
     heading: str
@@ -28,6 +29,7 @@ class Column:
     digits: int
     is_success: bool
     value: Callable[[StudyEpisodeRecord], float | None]
+    most: float | None = None
 
     def over(self, records: Sequence[StudyEpisodeRecord]) -> Estimate:
         """The mean over episodes, with an interval for other sentences and garments."""
@@ -37,7 +39,8 @@ class Column:
         found = mean(values, *shared(records))
         # A metric that is never negative, such as an error, has no negative mean.
         negative = any(value is not None and value < 0 for value in values)
-        return found if negative else replace(found, low=max(found.low, 0.0))
+        low = found.low if negative else max(found.low, 0.0)
+        return replace(found, low=low, high=found.high if self.most is None else min(found.high, self.most))
 
     def between(self, ours: Sequence[StudyEpisodeRecord], theirs: Sequence[StudyEpisodeRecord]) -> Estimate:
         """Mean difference, ours − theirs, over the same episodes in the same order."""
@@ -58,7 +61,7 @@ def shared(records: Sequence[StudyEpisodeRecord]) -> tuple[Labels, Labels]:
 def columns_of(run: RunRecord) -> list[Column]:
     """All columns of a run: its metrics, then success by its own criterion, then by the others."""
     metrics = [
-        Column(metric.heading, (name, metric.label), metric.digits, False, _metric(name))
+        Column(metric.heading, (name, metric.label), metric.digits, False, _metric(name), metric.most)
         for name, metric in run.metrics.items()
     ]
     own, *others = run.criteria

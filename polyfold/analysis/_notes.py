@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from polyfold.analysis._columns import Column, columns_of
+from polyfold.analysis._columns import Column, columns_of, shared
 from polyfold.analysis._results import Results
 from polyfold.config import Experiment
+from polyfold.errors import ConfigError
 from polyfold.logs import StudyEpisodeRecord
 
 REFERENCES = {
@@ -16,19 +17,30 @@ REFERENCES = {
 }
 """What results are compared with, in words."""
 
-INTERVAL = "95 % interval for other sentences and garments"
 
 ORACLE = "oracle"
 """The agent that shows which tasks are fit to judge others by."""
+
+ORDER = "order"
+"""The simulator's setting for the order of its particles and contacts."""
 
 NAMED = 4
 """So many unfit tasks are named."""
 
 
+def interval(results: Results) -> str:
+    """What the intervals of a table hold for: what there is only one of is not generalised over."""
+    sentences, garments = (set(labels) for labels in shared(results.records))
+    several = [name for name, found in (("sentences", sentences), ("garments", garments)) if len(found) > 1]
+    single = [name for name, found in (("sentence", sentences), ("garment", garments)) if len(found) == 1]
+    alone = f" and this one {' and '.join(single)}" if single else ""
+    return f"95 % interval for other {' and '.join(several)}{alone}" if several else "no interval, of one episode"
+
+
 def about(results: Results) -> str:
     """What a reader must know of a table of means before the figures mean anything."""
     study = results.study
-    parts = [f"{study.name}: mean [{INTERVAL}]; reference: {REFERENCES[study.reference]}"]
+    parts = [f"{study.name}: mean [{interval(results)}]; reference: {REFERENCES[study.reference]}"]
     return ". ".join([*parts, *filter(None, (_unfit(results), _made_with(results)))]) + "." + remarks(results)
 
 
@@ -50,12 +62,28 @@ def noise_floor(noise: Results) -> str:
     Args:
         noise: a study whose variants have their particles and contacts in other orders.
     """
+    if not _differ_in_order_alone(noise):
+        raise ConfigError(
+            f"the variants of {noise.study.name} differ in more than the order of particles, so that their difference "
+            "is no noise; give a run of experiments/noise_floor.toml"
+        )
     first, *others = noise.study.variants
     known = {_place(record): record for record in noise.of(first)}
     pairs = [(known[_place(r)], r) for name in others for r in noise.of(name) if _place(r) in known]
     columns = ", ".join(f"{column.heading} {_apart(column, pairs)}" for column in columns_of(noise.run))
     same = f"the same folds with particles and contacts in another order (n={len(pairs)})"
     return f"Noise floor: {same} differ by {columns}."
+
+
+def _differ_in_order_alone(noise: Results) -> bool:
+    """Whether the variants are the same but for the order in which the simulator has its particles."""
+    components = [noise.run.components.get(variant, {}) for variant in noise.study.variants]
+    plain = [
+        {field: {**spec.model_dump(), "params": {**spec.params, ORDER: None}} for field, spec in own.items()}
+        for own in components
+    ]
+    orders = [own["simulator"].params.get(ORDER) if "simulator" in own else None for own in components]
+    return all(other == plain[0] for other in plain) and len(set(orders)) == len(orders) > 1
 
 
 def _place(record: StudyEpisodeRecord) -> tuple[str | None, str, int | None, int]:
@@ -72,8 +100,10 @@ def _apart(column: Column, pairs: Sequence[tuple[StudyEpisodeRecord, StudyEpisod
 def _unfit(results: Results) -> str:
     """On which tasks and garments the oracle itself misses the reference, if it was asked."""
     asked = [record for record in results.records if record.agent == ORACLE and record.compared]
-    if not asked or results.study.reference == ORACLE:
+    if not asked:
         return ""
+    if results.study.reference == ORACLE:
+        return "The oracle's own row is compared with itself"
     counts = []
     for criterion in results.run.criteria:
         missed = [record for record in asked if not record.success[criterion]]
@@ -86,7 +116,7 @@ def _unfit(results: Results) -> str:
 
 def _made_with(results: Results) -> str:
     """Who answered, on which sentences and fabrics, at which commit."""
-    found = [_answered(results), _wordings(results.records), _fabrics(results), _commit(results)]
+    found = [_answered(results), _wordings(_reading(results)), _fabrics(results), _commit(results)]
     said = "; ".join(part for part in found if part)
     return said[:1].upper() + said[1:]
 
@@ -103,6 +133,12 @@ def _answered(results: Results) -> str:
     if len(set(names.values())) == 1:
         return f"sentences answered by {next(iter(names.values()))}"
     return "sentences answered by " + ", ".join(f"{name} in {variant}" for variant, name in names.items())
+
+
+def _reading(results: Results) -> list[StudyEpisodeRecord]:
+    """The episodes whose agent read the sentence."""
+    readers = {variant for variant, components in results.run.components.items() if "llm" in components}
+    return [record for record in results.records if record.variant in readers]
 
 
 def _wordings(records: Iterable[StudyEpisodeRecord]) -> str:

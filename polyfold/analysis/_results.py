@@ -60,7 +60,7 @@ class Results:
         """Only the episodes whose task has one fold (``single``) or several (``multi``)."""
         wanted = {"single": lambda count: count == 1, "multi": lambda count: count > 1}[steps]
         kept = [r for r in self.records if r.steps_wanted is not None and wanted(r.steps_wanted)]
-        return replace(self, records=kept)
+        return self._only(kept, {"single": "task of one fold", "multi": "task of several folds"}[steps])
 
     def of_wordings(self, wordings: str) -> Results:
         """Only the episodes whose sentence nothing was tuned on (``unseen``), or only the others (``seen``).
@@ -71,9 +71,19 @@ class Results:
         if wordings not in ("seen", "unseen"):
             raise ConfigError(f"wordings are seen or unseen, not {wordings!r}; choose one of the two")
         if all(record.wording_unseen is None for record in self.records):
-            raise ConfigError(f"{self.study.suite} doesn't say which wordings are unseen; leave the choice out")
+            raise ConfigError(
+                f"this run doesn't say which wordings are unseen: the suite {self.study.suite} did not when it was "
+                "recorded; leave the choice out, or run the study again"
+            )
         wanted = wordings == "unseen"
-        return replace(self, records=[record for record in self.records if record.wording_unseen == wanted])
+        kept = [record for record in self.records if record.wording_unseen == wanted]
+        return self._only(kept, f"{wordings} wording")
+
+    def _only(self, records: Sequence[StudyEpisodeRecord], what: str) -> Results:
+        """These records; raises ConfigError if there are none, though there were some."""
+        if self.records and not records:
+            raise ConfigError(f"no episode of {self.study.name} is of a {what}; leave the choice out")
+        return replace(self, records=records)
 
     def plot(self, column: str = "success %") -> Figure:
         """Bars per kind of garment and variant with intervals, as a matplotlib figure.

@@ -8,7 +8,7 @@ from typing import Any
 from polyfold.analysis._columns import Column, column_of, columns_of, shared
 from polyfold.analysis._differences import holm
 from polyfold.analysis._intervals import Estimate, mean
-from polyfold.analysis._notes import INTERVAL, about, noise_floor, remarks
+from polyfold.analysis._notes import about, interval, noise_floor, remarks
 from polyfold.analysis._results import Results
 from polyfold.analysis._tables import CERTAIN, Cell, Figure, Table
 from polyfold.errors import ConfigError, did_you_mean
@@ -29,8 +29,13 @@ GROUPS: Mapping[str, Key] = {
 """What rows can be made of; the groups ``none`` and ``step`` besides."""
 
 
+def _hardest_first(records: Iterable[StudyEpisodeRecord]) -> list[StudyEpisodeRecord]:
+    """In the study's order, but what nothing was tuned on before the rest."""
+    return sorted(records, key=lambda record: not record.wording_unseen)
+
+
 def _wording(record: StudyEpisodeRecord) -> str:
-    """A wording by number; those that nothing was tuned on are marked, and sort before the others."""
+    """A wording by number; those that nothing was tuned on are marked."""
     return f"{record.wording}, unseen" if record.wording_unseen else str(record.wording)
 
 
@@ -116,9 +121,7 @@ def _grouped(results: Results, variant: str, groups: str) -> list[tuple[str, lis
     found: list[tuple[str, list[StudyEpisodeRecord]]] = []
     if groups != "none":
         key = GROUPS[groups]
-        names = results.kinds() if groups == "kind" else dict.fromkeys(key(record) for record in results.records)
-        if groups == "wording":
-            names = sorted(names, key=lambda name: ("unseen" not in (name or ""), name or ""))
+        names = results.kinds() if groups == "kind" else dict.fromkeys(map(key, _hardest_first(results.records)))
         found = [(name or "–", [record for record in mine if key(record) == name]) for name in names]
     found.append(("all", mine))
     return [(name, records) for name, records in found if records]
@@ -151,7 +154,7 @@ def compare(results: Results, variant: str, baseline: str, columns: Sequence[str
         [*label, *(_difference(column, value, next(adjusted)) for column, value in zip(chosen, row, strict=True))]
         for label, row in zip(labels, found, strict=True)
     ]
-    note = f"{variant} − {baseline}, the same episodes; mean [{INTERVAL}]. {CERTAIN}: {TEST}."
+    note = f"{variant} − {baseline}, the same episodes; mean [{interval(results)}]. {CERTAIN}: {TEST}."
     note += remarks(results)
     return Table(["kind", "n", *(column.heading for column in chosen)], rows, note)
 

@@ -53,10 +53,11 @@ def judge(episode: Episode, task_id: str | None = None) -> Episode:
     (:class:`polyfold.types.Fidelity`).
     """
     kind = episode.garment.kind
-    if task_id is not None:
-        return _beside(episode, find_task(task_id, kind), "task")
     tasks = known_tasks(kind)
     asked = [task for task in tasks if _plain(episode.instruction) in map(_plain, task.instructions)]
+    if task_id is not None:
+        judged = _beside(episode, find_task(task_id, kind), "task")
+        return judged if not asked or task_id in (task.id for task in asked) else _doubted(judged, asked[0])
     if asked:
         # A sentence may ask for several tasks alike, such as those that differ in what goes first.
         judged = [_beside(episode, task, "sentence") for task in asked]
@@ -70,9 +71,16 @@ def judge(episode: Episode, task_id: str | None = None) -> Episode:
     return _compared(episode, planned, "self-referenced")
 
 
+def _doubted(episode: Episode, asked: Task) -> Episode:
+    """The episode without a verdict, since its sentence asks for another task than the caller named."""
+    assert episode.fidelity is not None
+    return replace(episode, fidelity=replace(episode.fidelity, verdict=None, contradicted=asked.id))
+
+
 def _plain(sentence: str) -> str:
-    """A sentence without what makes no difference: case, spaces, the full stop."""
-    return " ".join(sentence.casefold().split()).rstrip(" .!")
+    """A sentence without what makes no difference: case, spaces, punctuation, American spelling."""
+    words = "".join(sign if sign.isalnum() else " " for sign in sentence.casefold()).split()
+    return " ".join("centre" if word == "center" else word for word in words)
 
 
 def _rank(episode: Episode) -> tuple[int, float]:
@@ -106,7 +114,7 @@ def _verdict(end: Outcome, ideal: Outcome, quality: float) -> Verdict | None:
     if any(name not in known for _, name, _ in VERDICTS):
         return None
     for verdict, name, least in VERDICTS:
-        if quality < least:
+        if quality < least:  # it is NaN only where nobody installed the metric
             continue
         bounds = criteria([name])[name]
         if succeeded({bound.metric: _value(bound.metric, end, ideal) for bound in bounds}, bounds):

@@ -299,6 +299,7 @@ class MetricRecord(LogRecord):
         digits: after the point.
         higher_is_better: which way is good.
         summary: what it measures, in words.
+        most: the largest value that there can be, which no interval passes; None if there is none.
     """
 
     label: str
@@ -306,6 +307,7 @@ class MetricRecord(LogRecord):
     digits: int
     higher_is_better: bool
     summary: str = ""
+    most: float | None = None
 
     @property
     def heading(self) -> str:

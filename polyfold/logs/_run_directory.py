@@ -78,26 +78,34 @@ class RunDirectory(Generic[Record]):
             criteria=dict(criteria or {}),
         )
         if (self.path / DESCRIPTION).exists():
-            self.run = self._claimed(plain)
+            self.run = self._claimed()
         else:
             self._describe(self._now)
         self._lines.repair()
+        if self.run.asked != plain:
+            self._replace()
 
-    def _claimed(self, asked: dict[str, Any]) -> RunRecord:
+    def _replace(self) -> None:
+        """Describe this run in place of one of another configuration, if that has no episode yet.
+
+        A run that ended before its first one, for want of a key, say, binds nobody.
+        """
+        if self._lines.read():
+            changed = "; ".join(_changes(self.run.asked, self._now.asked))
+            raise ConfigError(
+                f"{self.path} holds a run with another configuration ({changed}); "
+                "use another directory, or the old configuration"
+            )
+        self._describe(self._now)
+
+    def _claimed(self) -> RunRecord:
         schema = _content(self.path / DESCRIPTION).get("schema_version")
         if schema == _schema_1.SCHEMA_VERSION:
             raise ConfigError(
                 f"{self.path} holds a run of an older version, which can be read and no longer resumed; "
                 "use another directory"
             )
-        run = read_run(self.path)
-        if run.asked != asked:
-            changed = "; ".join(_changes(run.asked, asked))
-            raise ConfigError(
-                f"{self.path} holds a run with another configuration ({changed}); "
-                "use another directory, or the old configuration"
-            )
-        return run
+        return read_run(self.path)
 
     def _describe(self, run: RunRecord) -> None:
         self.run = run

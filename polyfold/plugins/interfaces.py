@@ -327,6 +327,8 @@ class Metric(Protocol):
     Attributes:
         unit: ``mm``, for example; empty if it has none.
         higher_is_better: which way is good.
+
+    A metric may say as ``most`` what the largest value is that it can have: no interval in a table passes it then.
     """
 
     unit: ClassVar[str]

@@ -112,6 +112,7 @@ def _metric_record(name: str) -> MetricRecord:
         digits=metric.digits if isinstance(metric, RoundedMetric) else 1,
         higher_is_better=metric.higher_is_better,
         summary=plugins.find("metrics", name).summary,
+        most=getattr(metric, "most", None),
     )
 
 

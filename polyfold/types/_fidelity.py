@@ -25,8 +25,9 @@ class Fidelity:
         reference: who says which fold was wanted. With ``recognised`` and ``self-referenced`` nobody does: then a wrong
             plan that is executed well scores well.
         verdict: ``good`` within the strict criterion and of quality 70 or more, ``fair`` within the lenient one and of
-            40 or more, else ``bad``; None where they are not installed.
+            40 or more, else ``bad``; None where they are not installed, and where the sentence contradicts the task.
         quality: graded, 0 to 100; NaN where that metric is not installed.
+        contradicted: the task that the sentence is one of, where the caller named another; else empty.
     """
 
     iou: float
@@ -35,6 +36,7 @@ class Fidelity:
     reference: Reference
     verdict: Verdict | None = None
     quality: float = math.nan
+    contradicted: str = ""
 
     @property
     def vouched(self) -> bool:
@@ -49,6 +51,7 @@ class Fidelity:
         """
         if self.vouched:
             asked = "which was named" if self.reference == "task" else "which the sentence asks for"
+            asked += f", although the sentence asks for {self.contradicted}" if self.contradicted else ""
             quality = "" if math.isnan(self.quality) else f", quality {self.quality:.0f} of 100"
             return f"{self.verdict or 'compared'}: {self._figures()}{quality}; beside the ideal {task}, {asked}"
         ended = "not as planned" if self.verdict == "bad" else "as planned"

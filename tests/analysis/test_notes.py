@@ -35,6 +35,20 @@ def test_wordings_that_nothing_was_tuned_on_can_be_had_alone_and_lead(results):
         results.of_wordings("new")
 
 
+def test_a_choice_that_leaves_no_episode_is_said(results):
+    with pytest.raises(ConfigError, match="no episode of notes is of a task of several folds"):
+        results.of_length("multi")
+
+
+def test_intervals_claim_no_other_garments_where_there_was_one(results):
+    assert "95 % interval for other sentences and this one garment" in polyfold.table(results).note
+
+
+def test_the_noise_floor_is_of_runs_that_differ_in_order_alone(results):
+    with pytest.raises(ConfigError, match="differ in more than the order"):
+        polyfold.table(results, noise=results)
+
+
 def test_a_suite_that_says_nothing_of_its_wordings_has_none_that_are_unseen(results, tmp_path):
     study = polyfold.Study(name="goals", suite="ambiguous", tasks=("napkin-smaller-square",), edge_length=0.03)
     other = polyfold.run(study, tmp_path, progress=False)
@@ -61,3 +75,11 @@ def test_the_mean_of_an_error_has_no_negative_interval(results):
     made = [r.model_copy(update={"metrics": {"mppe": e}}) for r, e in zip(records, errors, strict=True)]
     assert column.over(made).low == 0.0
     assert column.between(made, made[::-1]).low < 0
+
+
+def test_no_interval_passes_what_a_metric_can_have(results):
+    column = next(column for column in columns_of(results.run) if column.heading == "quality")
+    records = results.of("polyfold")
+    values = [100.0] * (len(records) - 1) + [10.0]
+    made = [r.model_copy(update={"metrics": {"quality": v}}) for r, v in zip(records, values, strict=True)]
+    assert column.over(made).high == 100.0

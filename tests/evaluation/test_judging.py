@@ -48,7 +48,8 @@ def said(episode):
 
 def test_what_the_sentence_asks_for_and_gets_is_good():
     sentence = sentence_of("square-triangle-top_left", "square")
-    episode = folded(f"  {sentence.upper().rstrip('.')} ", ("bottom_left", "top_right"))
+    otherwise = sentence.upper().rstrip(".").replace(" ", "-", 1)
+    episode = folded(f'  "{otherwise}" ?', ("bottom_left", "top_right"))
     assert episode.fidelity.reference == "sentence"
     assert episode.fidelity.verdict == "good"
     assert episode.fidelity.quality > 80
@@ -69,6 +70,13 @@ def test_a_fold_of_the_wrong_part_is_bad_if_the_task_is_named():
     episode = folded("fold the right sleeve in", left, "tshirt", task="tshirt-sleeve-right-straight")
     assert episode.fidelity.reference == "task"
     assert said(episode).startswith("bad: ")
+
+
+def test_a_task_that_the_sentence_contradicts_gets_no_verdict():
+    sentence = sentence_of("square-triangle-top_left", "square")
+    episode = folded(sentence, ("bottom_right", "top_left"), task="square-triangle-bottom_left")
+    assert episode.fidelity.verdict is None
+    assert "although the sentence asks for square-triangle-top_left" in said(episode)
 
 
 def test_a_plan_that_is_some_task_but_was_not_asked_for_gets_no_praise():

@@ -43,9 +43,15 @@ def test_half_written_line_is_dropped_and_the_rest_kept(tmp_path):
 
 
 def test_another_configuration_is_refused_with_the_difference(tmp_path):
-    RunDirectory(tmp_path, {"policy": "caso", "n": 3}, Score)
+    RunDirectory(tmp_path, {"policy": "caso", "n": 3}, Score).append(Score(key="one", score=0.5))
     with pytest.raises(ConfigError, match=r"policy: 'caso' there, 'farthest' here"):
         RunDirectory(tmp_path, {"policy": "farthest", "n": 3}, Score)
+
+
+def test_a_run_that_never_had_an_episode_binds_nobody(tmp_path):
+    RunDirectory(tmp_path, {"policy": "caso"}, Score)
+    RunDirectory(tmp_path, {"policy": "farthest"}, Score).append(Score(key="one", score=0.5))
+    assert read_run(tmp_path).asked == {"policy": "farthest"}
 
 
 def test_unknown_schema_version_is_refused(tmp_path):

@@ -47,6 +47,18 @@ def test_the_oracle_leaves_the_best_of_what_it_tried(monkeypatch):
     assert any(np.array_equal(step.action.places, episode.steps[-1].action.places) for step in episode.steps[:-1])
 
 
+def test_a_try_that_a_fault_spoils_is_made_again():
+    """The best try is repeated until it lies there: under faults no two tries of the same picks are alike."""
+    from polyfold_standard.agents.oracle import _Trial
+
+    good, bad = Action(np.zeros((1, 2)), np.ones((1, 2))), Action(np.zeros((1, 2)), np.full((1, 2), 9.0))
+    trial = _Trial(line=None, scene=None, state=None, ideal=None, action=good, waiting=[bad], repeats=3)
+    assert trial.next_action(2.0, enough=0.6) is bad
+    assert trial.next_action(5.0, enough=0.6) is good
+    assert trial.next_action(9.0, enough=0.6) is good, "a slip; once more"
+    assert trial.next_action(2.0, enough=0.6) is None
+
+
 @pytest.mark.parametrize(("task", "folds"), [("rectangle-half-left", 1), ("rectangle-middle-left-right-half", 3)])
 def test_random_makes_as_many_folds_as_the_task_takes(task, folds):
     assert len(folded(task, "random").steps) == folds

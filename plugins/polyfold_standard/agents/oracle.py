@@ -35,6 +35,15 @@ VARIATIONS = (
 """What is tried in turn: how much less far the flap is carried than the line says [mm], and how much further towards
 each other two arms pick, as a share of their distance. A resting bend of a ply takes up 6 to 8 mm of cloth."""
 
+REPEATS = 3
+"""How often the best try is made again at most, where faults that are never twice the same spoil it."""
+
+NEARLY = 1.05
+"""How near to the best try its repetition must come."""
+
+BUDGET = 48
+"""Tries of all folds together, so that a task of many folds comes to its end: no episode takes more."""
+
 
 @dataclass(eq=False)
 class _Trial:
@@ -48,7 +57,8 @@ class _Trial:
         action: what is tried now.
         waiting: what else there is to try.
         tried: how far from the ideal each try came, as a share of what is allowed.
-        settled: whether the best that was found lies there.
+        repeats: how often the best of them may still be made again.
+        settled: whether the best that was found lies there, or nearly.
     """
 
     line: FoldLine
@@ -57,6 +67,7 @@ class _Trial:
     ideal: Outcome
     action: Action
     waiting: list[Action]
+    repeats: int
     tried: list[tuple[float, Action]] = field(default_factory=list)
     settled: bool = False
 
@@ -66,10 +77,12 @@ class _Trial:
         if error > enough and self.waiting:
             self.action = self.waiting.pop(0)
             return self.action
-        self.settled = True
-        best = min(self.tried, key=lambda tried: tried[0])[1]
-        if best is self.action:
+        self.waiting.clear()
+        least, best = min(self.tried, key=lambda tried: tried[0])
+        self.settled = error <= max(NEARLY * least, enough) or self.repeats == 0
+        if self.settled:
             return None
+        self.repeats -= 1
         self.action = best
         return best
 
@@ -101,6 +114,7 @@ class Oracle:
         """Take the true lines, and what each fold should lead to."""
         self._kind, self._simulator = goal.template.kind, goal.simulator
         self._pending = list(zip(goal.fold_lines or (), goal.ideals or (), strict=True))
+        self._tries = BUDGET // max(len(self._pending), 1)
         self._rng = np.random.default_rng(goal.seed)
         self._trial: _Trial | None = None
         return ()
@@ -118,8 +132,9 @@ class Oracle:
         mask = self._segmenter.segment(observation)
         scene = Scene(self._kind, (mask.shape[1], mask.shape[0]), mask, contour_of(mask), None, "{}")
         action = self._policy.act(line, scene, self._rng)
-        others = _variations(action, line, mask, observation.camera)
-        self._trial = _Trial(line, scene, self._simulator.state(), ideal, action, others)
+        repeats = min(REPEATS, self._tries - 1)
+        others = _variations(action, line, mask, observation.camera)[: self._tries - 1 - repeats]
+        self._trial = _Trial(line, scene, self._simulator.state(), ideal, action, others, repeats)
         return Decision(action, None, line, scene)
 
     def _error(self, ideal: Outcome, observation: Observation) -> float:
