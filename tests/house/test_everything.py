@@ -7,6 +7,7 @@ from experiments.everything import __main__ as command
 from experiments.everything.commands import CommandStep
 from experiments.everything.studies import StudyStep, _table
 
+
 class OneTask(StudyStep):
     def study(self):
         return polyfold.Study(name=self.name, tasks=("square-corner-top_left",), edge_length=0.03)
