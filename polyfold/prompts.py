@@ -16,10 +16,12 @@ A prompt file is ``<folder>/<role>/<version>.md``. Its YAML front matter names w
     {# role: user #}
     Subgoal: {{ subgoal }}
 
-The body is Jinja2, rendered in a sandbox in which an unknown name is an error. Inputs enter as JSON only: a ``text``
-becomes a quoted string, a ``json`` a decoded and re-encoded object, so that no input can pose as an instruction's
-frame. An ``image`` is not named in the body: it follows the user's text as a PNG. Examples are JSONL, one
-``{"inputs": {...}, "answer": "..."}`` a line, rendered by the same user template, without images.
+A line ``{# include: NAME #}`` stands for the text of ``<folder>/shared/NAME.txt``, so that what several prompts explain
+is written once. The body is Jinja2, rendered in a sandbox in which an unknown name is an error. Inputs enter as JSON
+only: a ``text`` becomes a quoted string, a ``json`` a decoded and re-encoded object, so that no input can pose as an
+instruction's frame. An ``image`` is not named in the body: it follows the user's text as a PNG. Examples are JSONL, one
+``{"inputs": {...}, "answer": "..."}`` a line, rendered by the same user template, without images. What never changes
+comes first in every message list, so that providers can keep it in their caches.
 """
 
 from __future__ import annotations
@@ -45,6 +47,7 @@ MAX_TEXT = 2000
 """Longest text input, in characters."""
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_ .:-]{0,39}")
+_INCLUDE = re.compile(r"^\{#\s*include:\s*([a-z0-9_-]+)\s*#\}\s*?$", re.MULTILINE)
 _MARKER = re.compile(r"^\{#\s*role:\s*(system|user)\s*#\}\s*$", re.MULTILINE)
 _FRONT = re.compile(r"\A---\n(.*?)\n---\n(.*)\Z", re.DOTALL)
 _ROLE = re.compile(r"[a-z][a-z0-9_-]{0,39}")
@@ -71,7 +74,7 @@ class Prompt:
         max_attempts: how many answers the repair loop may ask for.
         examples: few-shot examples, in order.
         sections: (chat role, Jinja2 source), in order.
-        sha256: of the prompt file and its examples.
+        sha256: of the prompt file, what it includes and its examples.
         path: where it was read from.
     """
 
@@ -137,17 +140,18 @@ class Prompt:
             raise ConfigError(f"prompt {self.path} can't be rendered: {error}; correct the template") from error
 
 
-def load_prompt(role: str, version: str = "v1", folders: Sequence[Path] = ()) -> Prompt:
+def load_prompt(role: str, version: str = "", folders: Sequence[Path] = ()) -> Prompt:
     """The prompt of a role and version.
 
     Args:
         role: folder name, ``subgoals``, ``fold_line``, ...
-        version: file name without ending.
+        version: file name without ending; by default the newest ``v1``, ``v2``, ...
         folders: searched first; then the folders of plugins, then PolyFold's own.
 
     Raises:
         ConfigError: if there is none or it is malformed.
     """
+    version = version or _newest(role, folders)
     for name in (role, version):
         if not _ROLE.fullmatch(name):
             raise ConfigError(f"{name!r} is no prompt name; take lower-case letters, digits, _ and -, 40 at most")
@@ -155,9 +159,16 @@ def load_prompt(role: str, version: str = "v1", folders: Sequence[Path] = ()) ->
     for folder in places:
         path = Path(folder) / role / f"{version}.md"
         if path.is_file():
-            return _read(path, path.stat().st_mtime_ns)
+            return _read(path, _modified(path))
     name = f"{role}@{version}"
     raise ConfigError(f"there is no prompt {name}; {did_you_mean(name, prompt_names(folders))}")
+
+
+def _newest(role: str, folders: Sequence[Path]) -> str:
+    """The highest numbered version of a role; ``v1`` if there is none."""
+    versions = [name.partition("@")[2] for name in prompt_names(folders) if name.startswith(f"{role}@")]
+    numbers = [int(version[1:]) for version in versions if re.fullmatch(r"v\d+", version)]
+    return f"v{max(numbers, default=1)}"
 
 
 def prompt_names(folders: Sequence[Path] = ()) -> list[str]:
@@ -186,9 +197,14 @@ def _plugin_folders() -> Iterator[Path]:
         yield Path(str(files(package))) / folder
 
 
+def _modified(path: Path) -> tuple[int, ...]:
+    """When a prompt and what prompts share was last written."""
+    return tuple(file.stat().st_mtime_ns for file in [path, *sorted((path.parent.parent / "shared").glob("*.txt"))])
+
+
 @cache
-def _read(path: Path, _modified: int) -> Prompt:
-    """Read and check a file; the modification time makes an edited file be read again."""
+def _read(path: Path, _modified: tuple[int, ...]) -> Prompt:
+    """Read and check a file; the times make it be read again where something was edited."""
     import yaml
 
     text = path.read_text("utf-8")
@@ -200,7 +216,10 @@ def _read(path: Path, _modified: int) -> Prompt:
     except yaml.YAMLError as error:
         raise ConfigError(f"prompt {path}: the front matter is not valid YAML ({error}); correct it") from error
     _check_front(front, path)
+    body = _INCLUDE.sub(lambda found: _included(found[1], path), parts[2])
     digest = hashlib.sha256(text.encode())
+    if body != parts[2]:
+        digest.update(body.encode())
     examples: tuple[Example, ...] = ()
     if front.get("examples"):
         source = path.parent / str(front["examples"])
@@ -214,10 +233,19 @@ def _read(path: Path, _modified: int) -> Prompt:
         dict(front.get("params") or {}),
         int(front.get("max_attempts", 3)),
         examples,
-        _sections(parts[2], path),
+        _sections(body, path),
         digest.hexdigest(),
         path,
     )
+
+
+def _included(name: str, path: Path) -> str:
+    """The text of a shared file, without the line end that closes it."""
+    shared = path.parent.parent / "shared" / f"{name}.txt"
+    try:
+        return shared.read_text("utf-8").rstrip("\n")
+    except OSError as error:
+        raise ConfigError(f"prompt {path} includes {shared}, which can't be read ({error.strerror}); add it") from error
 
 
 def _check_front(front: Any, path: Path) -> None:

@@ -68,6 +68,7 @@ class PolyFoldAgent:
         self._rng = np.random.default_rng(goal.seed)
         self._last: Decision | None = None
         self._tries = 0
+        self._reopened: set[str] = set()
         self._pending = list(self._planner.subgoals(goal.instruction, goal.template, goal.conversation))
         return tuple(self._pending)
 
@@ -97,17 +98,29 @@ class PolyFoldAgent:
             None if before is None else before.fold_line,
         )
         grounded = time.perf_counter()
-        subgoal = self._pending[0]
-        plan = self._planner.plan(subgoal, scene, self._goal.conversation)
+        plan = self._planner.plan(self._pending[0], scene, self._goal.conversation)
+        if isinstance(plan, Subgoal):
+            self._again(plan)
+            plan = self._planner.plan(plan, scene, self._goal.conversation)
         planned = time.perf_counter()
+        subgoal = self._pending[0]
         if plan is None or not _plans_step_by_step(self._planner):
             self._pending.pop(0)
         if plan is None:
             return None
+        if isinstance(plan, Subgoal):
+            raise PlanError(f"before “{subgoal.text}” can be folded again, “{plan.text}” should be; give up")
         action, line, action_map = self._act(plan, scene)
         self._attempt = Attempt(observation, mask, line, action)
         seconds = {"grounding": grounded - clock, "language": planned - grounded, "policy": _since(planned)}
         return Decision(action, subgoal, line, scene, seconds, action_map=action_map)
+
+    def _again(self, undone: Subgoal) -> None:
+        """Put a subgoal whose flap has come open before the others, once."""
+        if undone.text in self._reopened:
+            raise PlanError(f"“{undone.text}” came open again after it was folded twice; fold something else")
+        self._reopened.add(undone.text)
+        self._pending.insert(0, undone)
 
     def _can_repeat(self) -> bool:
         return self._config.recover and self._last is not None and self._tries < self._config.retries

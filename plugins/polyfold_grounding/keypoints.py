@@ -23,7 +23,8 @@ class KeypointsGrounding:
 
     The paper detects the keypoints of flat garments with a network (ClothFunnels) and takes points of the contour once
     the garment is folded, since no detector knows folded ones. Here the keypoints of the flat garment come from the
-    polygon fit. Edges, layers, creases and descriptions are withheld, and so is the model from everything downstream.
+    polygon fit. Edges, layers and creases are withheld, and so is the model from everything downstream; where the
+    keypoints lay before the first fold stays known.
     """
 
     class Config(PolygonGrounding.Config):
@@ -59,7 +60,11 @@ class KeypointsGrounding:
         if previous is None or (fold_line is None and _named(previous)):
             points, residual, notes = self._flat_keypoints(template, evidence)
         size = (mask.shape[1], mask.shape[0])
-        text = _text(template.kind, size, points)
+        image = {"width": size[0], "height": size[1], "px_per_cm": round(observation.camera.pixels_per_metre / 100, 2)}
+        content = {"garment": template.kind, "image": image, "keypoints": points}
+        if previous is not None and not isinstance(points, dict):
+            content["flat"] = _flat(previous)
+        text = json.dumps(content)
         return Scene(template.kind, size, mask, evidence.contour, None, text, residual, notes, shown=("keypoints",))
 
     def _flat_keypoints(
@@ -86,11 +91,11 @@ def _named(scene: Scene) -> bool:
     return isinstance(json.loads(scene.text).get("keypoints"), dict)
 
 
+def _flat(scene: Scene) -> Mapping[str, Sequence[int]]:
+    """Where the keypoints lay before the first fold."""
+    content = json.loads(scene.text)
+    return content.get("flat", content["keypoints"])
+
+
 def _whole(point: Sequence[float]) -> list[int]:
     return [round(float(value)) for value in point]
-
-
-def _text(kind: str, size: tuple[int, int], points: Mapping[str, Sequence[int]] | Sequence[Sequence[int]]) -> str:
-    """Strict JSON: keypoints by name, or a list in the order of the contour."""
-    width, height = size
-    return json.dumps({"garment": kind, "image": {"width": width, "height": height}, "keypoints": points})

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.geometry import FoldLine
-from polyfold.polygon import FoldedModel, Template
+from polyfold.polygon import Template
 from polyfold.types import Observation, Scene
 from polyfold_grounding.fitting.evidence import Evidence
 
@@ -76,21 +76,11 @@ class PolygonGrounding:
             tracked = next_model(
                 previous.model, previous.contour, fold_line, evidence, self.config.displaced_px, thickness
             )
-        return self._scene(template, mask, evidence.contour, tracked.model, tracked.chamfer, tracked.notes)
+        size = (mask.shape[1], mask.shape[0])
+        text = tracked.model.to_text(size, observation.camera.pixels_per_metre)
+        return Scene(template.kind, size, mask, evidence.contour, tracked.model, text, tracked.chamfer, tracked.notes)
 
     def _thickness(self, template: Template) -> float:
         """Of one layer of the model [m]: as chosen, else as said of the fabric."""
         said = UNTOLD if template.thickness is None else template.thickness
         return said if self.config.ply_thickness is None else self.config.ply_thickness
-
-    def _scene(
-        self,
-        template: Template,
-        mask: NDArray[np.bool_],
-        contour: NDArray[np.float64],
-        model: FoldedModel,
-        residual: float,
-        notes: tuple[str, ...],
-    ) -> Scene:
-        size = (mask.shape[1], mask.shape[0])
-        return Scene(template.kind, size, mask, contour, model, model.to_text(size), residual, notes)

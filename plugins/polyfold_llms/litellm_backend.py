@@ -126,11 +126,13 @@ class LiteLLM:
 
     def _request(self, messages: Sequence[Message], params: Mapping[str, Any]) -> dict[str, Any]:
         """What litellm is called with, the key aside."""
+        from polyfold_llms.litellm_client import carried_format, with_cache_marks
+
         wanted = model_table.accepted_params(self.model, {**params, **self._config.params})
         return {
-            **wanted,
+            **carried_format(self.model, wanted),
             "model": self.model,
-            "messages": [_sendable(message) for message in messages],
+            "messages": with_cache_marks(self.model, [_sendable(message) for message in messages]),
             "timeout": self._config.timeout_s,
             "max_retries": 0,
             "drop_params": True,
@@ -173,12 +175,14 @@ class LiteLLM:
         response = answer.result
         if response is None:
             return Reply("", finish="refusal", refusal="the provider's content filter barred the request", **timing)
+        from polyfold_llms.litellm_client import as_asked
+
         choice = response.choices[0]
         usage = _usage(response)
         cost, source = model_table.call_cost(self.model, usage, getattr(response.usage, "cost", None))
         refusal = _refusal(choice)
         reply = {
-            "text": choice.message.content or "",
+            "text": as_asked(choice.message.content or ""),
             "reasoning": getattr(choice.message, "reasoning_content", None),
             "finish": "refusal" if refusal else "length" if choice.finish_reason == "length" else "stop",
             "refusal": refusal,
@@ -257,4 +261,5 @@ def _usage(response: Any) -> dict[str, int]:
     counts = {name: getattr(usage, name, None) for name in _COUNTED}
     details = getattr(usage, "completion_tokens_details", None)
     counts["reasoning_tokens"] = getattr(details, "reasoning_tokens", None)
+    counts["cached_tokens"] = getattr(getattr(usage, "prompt_tokens_details", None), "cached_tokens", None)
     return {name: int(count) for name, count in counts.items() if count is not None}

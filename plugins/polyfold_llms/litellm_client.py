@@ -1,7 +1,11 @@
-"""The one place that imports litellm: lazily, with its remote look-ups, retries and chatter switched off."""
+"""The one place that imports litellm: lazily, with its remote look-ups, retries and chatter switched off.
+
+What it does otherwise than its own tables say stands here too, with the version in which it was measured.
+"""
 
 from __future__ import annotations
 
+import json
 import logging
 import os
 from collections.abc import Mapping, Sequence
@@ -58,3 +62,62 @@ def count_tokens(name: str, messages: Sequence[Mapping[str, Any]]) -> int:
     """Tokens of a conversation by the model's tokenizer, as far as litellm carries it (else OpenAI's)."""
     asked = {"model": name.removeprefix("openrouter/"), "messages": [dict(message) for message in messages]}
     return int(load_litellm().token_counter(**asked))
+
+
+JSON_ANSWER: Mapping[str, Any] = {
+    "type": "json_schema",
+    "json_schema": {
+        "name": "answer",
+        "strict": True,
+        "schema": {
+            "type": "object",
+            "properties": {
+                "reasoning": {"type": "string", "description": "the reasoning that comes before the JSON object"},
+                "answer": {"type": "string", "description": "the final JSON object itself, as text"},
+            },
+            "required": ["reasoning", "answer"],
+            "additionalProperties": False,
+        },
+    },
+}
+"""What is asked for where ``json_object`` would be lost: reasoning and object, as a schema that fits every prompt."""
+
+
+def carried_format(name: str, params: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters with a response format that reaches the model.
+
+    litellm 1.106.2 drops ``json_object`` for models on Anthropic's own route, among them some that it lists as
+    supporting it, and carries ``json_schema`` for all of them.
+    """
+    wanted = params.get("response_format")
+    if name.startswith("anthropic/") and isinstance(wanted, Mapping) and wanted.get("type") == "json_object":
+        return {**params, "response_format": JSON_ANSWER}
+    return dict(params)
+
+
+def as_asked(text: str) -> str:
+    """An answer in the form of :data:`JSON_ANSWER` as the prompts want it: reasoning, then a fenced object."""
+    try:
+        content = json.loads(text)
+    except ValueError:
+        return text
+    if not isinstance(content, dict) or set(content) != {"reasoning", "answer"}:
+        return text
+    return f"{content['reasoning']}\n\n```json\n{content['answer']}\n```"
+
+
+def with_cache_marks(name: str, messages: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """The messages, marked for Claude up to where they are the same in the next call.
+
+    Other providers find a repeated beginning themselves; Anthropic caches it only up to a mark.
+    """
+    marked = {0, len(messages) - 2} if "claude" in name else set()
+    return [_marked(message) if at in marked else dict(message) for at, message in enumerate(messages)]
+
+
+def _marked(message: Mapping[str, Any]) -> dict[str, Any]:
+    content = message.get("content")
+    if not isinstance(content, str) or not content:
+        return dict(message)
+    part = {"type": "text", "text": content, "cache_control": {"type": "ephemeral"}}
+    return {**message, "content": [part]}

@@ -10,9 +10,9 @@ from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import Template
 from polyfold.prompts import load_prompt
 from polyfold.types import Reply, Subgoal
-from polyfold_planning.grammar import check_subgoal
-from polyfold_planning.repair import ask_until_valid
-from polyfold_planning.replies import answer_object, subgoals_in
+from polyfold_planning.answers.grammar import check_subgoal
+from polyfold_planning.answers.repair import ask_until_valid
+from polyfold_planning.answers.replies import answer_object, subgoals_in
 
 
 class DecompositionConfig(BaseModel):
@@ -20,7 +20,7 @@ class DecompositionConfig(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    subgoals_prompt: str = Field(default="v1", description="version of the prompt that splits instructions")
+    subgoals_prompt: str = Field(default="v2", description="version of the prompt that splits instructions")
     max_attempts: int | None = Field(
         default=None, ge=1, le=10, description="answers asked for; None: as the prompt says"
     )

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from polyfold import plugins
 from polyfold.analysis._differences import difference, share_difference
 from polyfold.analysis._intervals import Estimate, Labels, mean, share
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.logs import RunRecord, StudyEpisodeRecord
+from polyfold.logs._records import MetricRecord
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,8 @@ class Column:
         if self.is_success:
             return share([None if value is None else value > 0 for value in values], *shared(records))
         found = mean(values, *shared(records))
+        if not math.isfinite(found.high):
+            return found
         # A metric that is never negative, such as an error, has no negative mean.
         negative = any(value is not None and value < 0 for value in values)
         low = found.low if negative else max(found.low, 0.0)
@@ -61,7 +66,7 @@ def shared(records: Sequence[StudyEpisodeRecord]) -> tuple[Labels, Labels]:
 def columns_of(run: RunRecord) -> list[Column]:
     """All columns of a run: its metrics, then success by its own criterion, then by the others."""
     metrics = [
-        Column(metric.heading, (name, metric.label), metric.digits, False, _metric(name), metric.most)
+        Column(metric.heading, (name, metric.label), metric.digits, False, _metric(name), _most(name, metric))
         for name, metric in run.metrics.items()
     ]
     own, *others = run.criteria
@@ -79,6 +84,13 @@ def column_of(run: RunRecord, name: str) -> Column:
     known = [known for column in columns for known in (column.heading, *column.names)]
     headings = ", ".join(column.heading for column in columns)
     raise ConfigError(f"there is no column {name!r}; {did_you_mean(name, known, f'choose from {headings}')}")
+
+
+def _most(name: str, metric: MetricRecord) -> float | None:
+    """The largest value of a metric; runs of before it was recorded are asked for by the installed metric."""
+    if metric.most is None and name in plugins.names("metrics"):
+        return getattr(plugins.component_class("metrics", name), "most", None)
+    return metric.most
 
 
 def _metric(name: str) -> Callable[[StudyEpisodeRecord], float | None]:

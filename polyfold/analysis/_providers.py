@@ -78,6 +78,12 @@ MEASURES: dict[str, Measure] = {
     "fold-line failures %": Measure(lambda record: float(record.cause == "fold line"), _one, is_share=True),
     "latency [s/call]": Measure(_latency, _replies, 2),
     "tokens in": Measure(lambda record: _answered(record, lambda account: account.prompt_tokens), _one, 0),
+    "cached %": Measure(
+        lambda record: _answered(record, lambda account: account.cached_tokens),
+        lambda record: _answered(record, lambda account: account.prompt_tokens) or 0.0,
+        0,
+        is_share=True,
+    ),
     "tokens out": Measure(lambda record: _answered(record, lambda account: account.completion_tokens), _one, 0),
     "cost [US$]": Measure(lambda record: _answered(record, lambda account: account.cost), _one, 4),
 }

@@ -25,7 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     actions.add_parser("list", help="the prompts that are installed")
     show = actions.add_parser("show", help="one prompt as the model gets it, with its number of tokens")
-    show.add_argument("role", help="for example subgoals or fold_line")
+    show.add_argument("role", nargs="?", help="for example subgoals or fold_line; without one, the roles are listed")
     show.add_argument("--instruction", default="fold it in half", help="default: fold it in half")
     show.add_argument("--step", type=int, default=0, metavar="N", help="after N folds, for what is asked per fold")
     show.add_argument("--model", metavar="ROUTE/MODEL", help="count tokens by this model's tokenizer (needs litellm)")
@@ -41,7 +41,11 @@ def run(arguments: argparse.Namespace) -> int:
 
         print("\n".join(prompt_names()))
         return 0
-    call = _asked(arguments)
+    calls = _calls(arguments)
+    if arguments.role is None:
+        print("\n".join(dict.fromkeys(call.role for call in calls)))
+        return 0
+    call = _asked(arguments, calls)
     tokens, how = _tokens(call.messages, arguments.model)
     if arguments.json:
         shown = {name: getattr(call, name) for name in ("role", "step", "params", "messages")}
@@ -53,39 +57,69 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _asked(arguments: argparse.Namespace) -> Call:
-    """The request in a role and at a step of an episode. Raises ConfigError if nothing of the kind was asked."""
+def _calls(arguments: argparse.Namespace) -> Sequence[Call]:
+    """What a language model is asked in an episode. Raises ConfigError if it is asked nothing."""
     from polyfold.api import attempt
 
     experiment = experiment_from(arguments)
     garment = garment_from(arguments, experiment)
     episode = attempt(arguments.instruction, garment, arguments.seed, experiment)
-    wanted = [call for call in episode.calls if call.role == arguments.role]
+    if not episode.calls:
+        raise ConfigError(_with_failure("no language model is asked anything", episode))
+    return episode.calls
+
+
+def _asked(arguments: argparse.Namespace, calls: Sequence[Call]) -> Call:
+    """The request in a role and at a step. Raises ConfigError if nothing of the kind was asked."""
+    wanted = [call for call in calls if call.role == arguments.role]
     if not wanted:
-        roles = ", ".join(dict.fromkeys(call.role for call in episode.calls)) or "none"
-        raise ConfigError(_with_failure(f"nothing was asked in the role {arguments.role!r}, but in {roles}", episode))
+        roles = ", ".join(dict.fromkeys(call.role for call in calls))
+        raise ConfigError(f"nothing was asked in the role {arguments.role!r}, but in {roles}; {_CHOOSE}")
     found = [call for call in wanted if call.step in (None, arguments.step)]
     if not found:
         steps = ", ".join(str(step) for step in dict.fromkeys(call.step for call in wanted))
-        raise ConfigError(
-            _with_failure(f"{arguments.role!r} was not asked at step {arguments.step}, but at {steps}", episode)
-        )
+        raise ConfigError(f"{arguments.role!r} was not asked at step {arguments.step}, but at {steps}; {_CHOOSE}")
     return found[0]
 
 
 def _with_failure(problem: str, episode: Episode) -> str:
     ended = f"; the episode ended early ({episode.failure.reason})" if episode.failure else ""
-    return f"{problem}{ended}; choose among them, or give another --instruction, --planner or --step"
+    return f"{problem}{ended}; give another --instruction, --agent or --planner"
+
+
+_CHOOSE = "choose among them, or give another --instruction, --planner or --step"
+
+
+PICTURE_TOKENS = 255
+"""What a picture counts: OpenAI's 85 and 170 a tile of 512 px at high detail; at low detail it counts 85."""
 
 
 def _tokens(messages: Sequence[Message], model: str | None) -> tuple[int, str]:
-    """The number of tokens and how it was counted; a picture is not counted."""
+    """The number of tokens, and how it was counted."""
+    pictures = sum(_pictures(message) for message in messages)
+    each = f", each picture taken as {PICTURE_TOKENS}, OpenAI's high detail" if pictures else ""
     if model is None:
-        characters = sum(len(_text(message)) for message in messages)
-        return math.ceil(characters / CHARACTERS_PER_TOKEN), f"estimated at {CHARACTERS_PER_TOKEN:g} characters each"
-    counter = plugins.component_class("llms", "litellm")
-    texts = [{"role": message["role"], "content": _text(message)} for message in messages]
-    return counter.count_tokens(model, texts), f"by the tokenizer of {model}"
+        characters = sum(len(_words(message)) for message in messages)
+        count, how = (
+            math.ceil(characters / CHARACTERS_PER_TOKEN),
+            f"estimated at {CHARACTERS_PER_TOKEN:g} characters each",
+        )
+    else:
+        counter = plugins.component_class("llms", "litellm")
+        texts = [{"role": message["role"], "content": _words(message)} for message in messages]
+        count, how = counter.count_tokens(model, texts), f"by the tokenizer of {model}"
+    return count + pictures * PICTURE_TOKENS, how + each
+
+
+def _pictures(message: Message) -> int:
+    content = message["content"]
+    return 0 if isinstance(content, str) else sum(part["type"] != "text" for part in content)
+
+
+def _words(message: Message) -> str:
+    """The text alone."""
+    content = message["content"]
+    return content if isinstance(content, str) else "\n".join(p["text"] for p in content if p["type"] == "text")
 
 
 def _text(message: Message) -> str:

@@ -55,6 +55,7 @@ class Account(BaseModel):
         errors: requests that brought no reply.
         tries: transport tries of the replies.
         prompt_tokens, completion_tokens: summed over the replies.
+        cached_tokens: how many of the prompts' came from the provider's cache, as far as it says.
         latency_s: of the successful calls [s].
         wall_s: with failed tries and waits [s].
         cost: US dollars.
@@ -73,6 +74,7 @@ class Account(BaseModel):
     tries: int
     prompt_tokens: int | None
     completion_tokens: int | None
+    cached_tokens: int | None = None
     latency_s: float | None
     wall_s: float | None
     cost: float | None
@@ -100,6 +102,7 @@ def _account(calls: Sequence[_Call]) -> Account:
         tries=sum(reply.attempts for reply in replies),
         prompt_tokens=_tokens(replies, "prompt_tokens"),
         completion_tokens=_tokens(replies, "completion_tokens"),
+        cached_tokens=_tokens(replies, "cached_tokens"),
         latency_s=sum(reply.latency_s for reply in replies),
         wall_s=sum(reply.wall_s for reply in replies),
         cost=_sum_of_known(reply.cost for reply in replies),

@@ -183,8 +183,10 @@ class Planner(Protocol):
         """Decompose an instruction. Raises RefusedError with the reason when it can't or must not be done."""
         ...
 
-    def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine | Action | None:
+    def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> FoldLine | Action | Subgoal | None:
         """Plan one step on the scene as seen now; None when nothing is left to do.
+
+        An earlier subgoal in place of a plan says that its flap has come open, so that it must be folded again first.
 
         Raises PlanError when no valid answer came after the repairs.
         """

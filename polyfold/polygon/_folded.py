@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -47,6 +47,8 @@ class FoldedModel:
             the rest of the lifted part comes to lie exactly on its mirror image. Negative where the outer plies of a
             thick packet stand out beyond the line.
         meetings: which vertices each fold was meant to bring onto which, as pairs of names; none if not given.
+        numbers: of each fold, from 1 in the order in which they were made; its crease's ends are named by it, and keep
+            their names when an earlier flap comes open.
     """
 
     rest: Floats
@@ -56,6 +58,7 @@ class FoldedModel:
     kind: str = "cloth"
     allowances: tuple[float, ...] = ()
     meetings: tuple[tuple[Pair, ...], ...] = ()
+    numbers: tuple[int, ...] = ()
     _facets: tuple[Facet, ...] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
@@ -70,7 +73,8 @@ class FoldedModel:
         object.__setattr__(self, "folds", tuple(self.folds))
         object.__setattr__(self, "allowances", tuple(self.allowances) or (0.0,) * len(self.folds))
         object.__setattr__(self, "meetings", tuple(self.meetings) or ((),) * len(self.folds))
-        for what, given in (("allowances", self.allowances), ("meetings", self.meetings)):
+        object.__setattr__(self, "numbers", tuple(self.numbers) or tuple(range(1, len(self.folds) + 1)))
+        for what, given in (("allowances", self.allowances), ("meetings", self.meetings), ("numbers", self.numbers)):
             if len(given) != len(self.folds):
                 raise GarmentError(f"there are {len(self.folds)} folds and {len(given)} {what}; give one per fold")
 
@@ -86,7 +90,8 @@ class FoldedModel:
         Raises:
             PlanError: if the line is too short, or leaves all cloth on one side; the message says which.
         """
-        facets = fold_facets(self.facets(), line, len(self.folds) + 1, allowance)
+        number = max(self.numbers, default=0) + 1
+        facets = fold_facets(self.facets(), line, number, allowance)
         met = meetings(self.points(), planned, self._size) if planned else ()
         return FoldedModel(
             self.rest,
@@ -96,6 +101,7 @@ class FoldedModel:
             self.kind,
             (*self.allowances, allowance),
             (*self.meetings, met),
+            (*self.numbers, number),
             facets,
         )
 
@@ -105,13 +111,15 @@ class FoldedModel:
 
     def before(self, fold: int) -> FoldedModel:
         """The model with only the first ``fold`` folds."""
-        return self._of(range(fold), self.meetings)
+        return self._of(range(fold))
 
     def without(self, fold: int) -> FoldedModel:
-        """The model without its ``fold``-th fold, from 1; the later ones stay, and their creases are renumbered."""
-        # Creases have other names then, so that what met them is forgotten.
-        met = [tuple(pair for pair in pairs if set(pair) <= set(self.names)) for pairs in self.meetings]
-        return self._of([number for number in range(len(self.folds)) if number != fold - 1], met)
+        """The model without its ``fold``-th fold, from 1; the later ones stay, and their creases keep their names."""
+        kept = [number for number in range(len(self.folds)) if number != fold - 1]
+        gone = {f"fold{self.numbers[fold - 1]}_{end}" for end in ("start", "end")}
+        model = self._of(kept)
+        met = tuple(tuple(pair for pair in pairs if not gone & set(pair)) for pairs in model.meetings)
+        return replace(model, meetings=met)
 
     def facets(self) -> tuple[Facet, ...]:
         """The flat pieces the garment consists of now."""
@@ -133,13 +141,18 @@ class FoldedModel:
         """Name -> position [px], shape (2,)."""
         return {name: state.point for name, state in self.vertices().items()}
 
-    def to_text(self, image_size: tuple[int, int]) -> str:
+    def to_text(self, image_size: tuple[int, int], pixels_per_metre: float | None = None) -> str:
         """The model for a language model: strict JSON in stable order, coordinates in whole pixels.
 
         Args:
             image_size: (width, height) [px].
+            pixels_per_metre: of the table, if known, so that centimetres can be told.
         """
-        return model_text(self.kind, self.vertices(), self.facets(), image_size)
+        image: dict[str, float] = {"width": int(image_size[0]), "height": int(image_size[1])}
+        if pixels_per_metre is not None:
+            image["px_per_cm"] = round(pixels_per_metre / 100, 2)
+        flat = dict(zip(self.names, self.rest, strict=True)) if self.folds else {}
+        return model_text(self.kind, self.vertices(), self.facets(), flat, image)
 
     def transformed(
         self, angle: float, translation: ArrayLike = (0.0, 0.0), centre: ArrayLike = (0.0, 0.0)
@@ -158,7 +171,14 @@ class FoldedModel:
 
         folds = tuple(FoldLine.between(*move([line.start, line.end])) for line in self.folds)
         return FoldedModel(
-            move(self.rest), self.names, self.descriptions, folds, self.kind, self.allowances, self.meetings
+            move(self.rest),
+            self.names,
+            self.descriptions,
+            folds,
+            self.kind,
+            self.allowances,
+            self.meetings,
+            self.numbers,
         )
 
     def with_last_fold(self, line: FoldLine, allowance: float = 0.0) -> FoldedModel:
@@ -167,7 +187,7 @@ class FoldedModel:
             raise GarmentError("the model has no fold to replace; use fold() to add one")
         return self.before(len(self.folds) - 1).fold(line, allowance)
 
-    def _of(self, kept: Sequence[int], meetings: Sequence[tuple[Pair, ...]]) -> FoldedModel:
+    def _of(self, kept: Sequence[int]) -> FoldedModel:
         """The model with only some of its folds, counted from 0."""
         return FoldedModel(
             self.rest,
@@ -176,7 +196,8 @@ class FoldedModel:
             tuple(self.folds[k] for k in kept),
             self.kind,
             tuple(self.allowances[k] for k in kept),
-            tuple(meetings[k] for k in kept),
+            tuple(self.meetings[k] for k in kept),
+            tuple(self.numbers[k] for k in kept),
         )
 
     @cached_property
@@ -184,7 +205,7 @@ class FoldedModel:
         if self._facets is not None:
             return self._facets
         facets: tuple[Facet, ...] = (Facet.flat(self.rest, self.names),)
-        for number, (line, allowance) in enumerate(zip(self.folds, self.allowances, strict=True), start=1):
+        for number, line, allowance in zip(self.numbers, self.folds, self.allowances, strict=True):
             facets = fold_facets(facets, line, number, allowance)
         return facets
 
@@ -205,7 +226,7 @@ class FoldedModel:
         return float(np.sqrt(abs(polygon_area(self.rest))))
 
     def _all_names(self) -> list[str]:
-        creases = [f"fold{k}_{end}" for k in range(1, len(self.folds) + 1) for end in ("start", "end")]
+        creases = [f"fold{number}_{end}" for number in self.numbers for end in ("start", "end")]
         return [*self.names, *creases]
 
     def _found(self, name: str) -> _Place:
@@ -241,7 +262,7 @@ class FoldedModel:
         if name in self.names:
             return self.rest[self.names.index(name)]
         number = int(name.removeprefix("fold").split("_")[0])
-        for facet in self.before(number).facets():
+        for facet in self.before(self.numbers.index(number) + 1).facets():
             for i, names in enumerate(facet.names):
                 if name in names:
                     return facet.at_rest(facet.polygon[i])

@@ -106,13 +106,12 @@ class Template:
         return FoldedModel(np.asarray(vertices, float), self.names, self.descriptions, kind=self.kind)
 
     def to_text(self) -> str:
-        """The template for a language model: strict JSON with garment, vertices, parts and edges, in stable order."""
+        """The template for a language model: strict JSON with garment, vertices around the outline, and parts."""
         return json.dumps(
             {
                 "garment": self.kind,
                 "vertices": self.descriptions,
                 "parts": {part: list(members) for part, members in self.parts.items()},
-                "edges": [[a, b] for a, b in zip(self.names, self.names[1:] + self.names[:1], strict=True)],
             },
             allow_nan=False,
         )

@@ -1,63 +1,74 @@
-"""The polygon model as a language model is shown it: strict JSON in a stable order."""
+"""The polygon model as a language model is shown it: strict JSON in a stable order, nothing said twice."""
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from polyfold.polygon._layers import Facet
 from polyfold.polygon._vertices import VertexState
 
+_WORD = re.compile(r"[a-z]+|[0-9]+")
+
+MOVED = 1.5
+"""A vertex this far from where it lay on the flat garment [px] has been moved."""
+
 
 def model_text(
-    kind: str, vertices: Mapping[str, VertexState], facets: Iterable[Facet], image_size: tuple[int, int]
+    kind: str,
+    vertices: Mapping[str, VertexState],
+    facets: Iterable[Facet],
+    flat: Mapping[str, NDArray[np.float64]],
+    image: Mapping[str, float],
 ) -> str:
-    """Vertices with whole pixels, description, layers and visibility; edges per layer, creases marked.
+    """Vertices with whole pixels; once the garment is folded, layers, pieces, and where vertices lay when flat.
+
+    What goes without saying is left out: that a vertex is visible, on the lowest layer, and what its name says already.
 
     Args:
         kind: garment kind.
         vertices: named vertices, in the order to show them.
         facets: the pieces of cloth.
-        image_size: (width, height) [px].
+        flat: where vertices lay on the flat garment [px], shape (2,) each; empty if it is flat.
+        image: what is said of the picture, such as its ``width`` and ``height`` [px].
     """
-    shown = {
-        name: {
-            "x": round(float(state.point[0])),
-            "y": round(float(state.point[1])),
-            "description": state.description,
-            "layers": list(state.layers),
-            "visible": state.visible,
-        }
-        for name, state in vertices.items()
-    }
-    width, height = image_size
     content: dict[str, Any] = {
         "garment": kind,
-        "image": {"width": int(width), "height": int(height)},
-        "vertices": shown,
-        "edges": _edges(facets, list(vertices)),
+        "image": dict(image),
+        "vertices": {name: _shown(name, state) for name, state in vertices.items()},
     }
+    if flat:
+        moved = {name: at for name, at in flat.items() if np.hypot(*(vertices[name].point - at)) > MOVED}
+        content["flat"] = {name: _whole(at) for name, at in moved.items()}
+        content["outlines"] = _outlines(facets, list(vertices))
     return json.dumps(content, allow_nan=False)
 
 
-def _edges(facets: Iterable[Facet], order: list[str]) -> dict[str, list[list[str]]]:
+def _shown(name: str, state: VertexState) -> Any:
+    """Where a vertex lies, and what else there is to say of it."""
+    more: dict[str, Any] = {}
+    if state.layers != (0,):
+        more["layers"] = list(state.layers)
+    if not state.visible:
+        more["hidden"] = True
+    if not set(_WORD.findall(name)) <= set(_WORD.findall(state.description.lower())):
+        more["is"] = state.description
+    return {"at": _whole(state.point), **more} if more else _whole(state.point)
+
+
+def _whole(point: NDArray[np.float64]) -> list[int]:
+    return [round(float(value)) for value in point]
+
+
+def _outlines(facets: Iterable[Facet], order: list[str]) -> dict[str, list[list[str]]]:
+    """The pieces of every layer by the named corners around them; corners without a name are passed over."""
     layers: dict[int, list[list[str]]] = {}
     for facet in sorted(facets, key=lambda facet: facet.layer):
-        known = layers.setdefault(facet.layer, [])
-        for edge in _named_edges(facet, order):
-            if edge not in known and [edge[1], edge[0], *edge[2:]] not in known:
-                known.append(edge)
-    return {str(layer): edges for layer, edges in layers.items()}
-
-
-def _named_edges(facet: Facet, order: list[str]) -> list[list[str]]:
-    """Edges between named corners; unnamed corners (a line that cuts the cloth twice) are passed over."""
-    corners = [i for i, names in enumerate(facet.names) if names]
-    found = []
-    for i, j in zip(corners, corners[1:] + corners[:1], strict=True):
-        labels = {facet.edges[k % len(facet.edges)] for k in range(i, j if j > i else j + len(facet.edges))}
-        a, b = (min(facet.names[k], key=order.index) for k in (i, j))
-        if a != b and len(labels) == 1:
-            found.append([a, b, *(labels - {""})])
-    return found
+        named = [min(names, key=order.index) for names in facet.names if names]
+        layers.setdefault(facet.layer, []).append(list(dict.fromkeys(named)))
+    return {str(layer): pieces for layer, pieces in layers.items()}

@@ -40,12 +40,15 @@ class Scene:
         mask: where the cloth is, bool, shape (H, W).
         contour: outer boundary of the cloth [px], shape (N, 2).
         model: the fitted polygon model, or None for groundings without one.
-        text: what a language model is shown: strict JSON.
+        text: what a language model is shown: a strict JSON object with ``garment``, ``image`` (``width``, ``height``
+            and, where known, ``px_per_cm``) and ``vertices``: name -> ``[x, y]`` [px] or ``{"at": [x, y], ...}``.
+            Points without names stand in ``keypoints`` as a list. After a fold ``flat`` says where vertices lay before
+            the first one, if elsewhere. The offline solver refuses a text without any of them.
         residual: Chamfer distance between model and contour [px]; NaN without a model.
         notes: things the caller should know (a displaced garment, an ambiguous silhouette).
         picture: what a vision model is shown beside the text: colours, uint8, shape (H, W, 3); None for none.
         shown: what text and picture hold, of ``polygon``, ``keypoints``, ``image``; it decides which prompt explains
-            them to the language model (``fold_line/keypoints-image-v1.md``).
+            them to the language model (``fold_line/keypoints-image-v2.md``).
     """
 
     kind: str

@@ -41,4 +41,4 @@ def test_roles_and_steps_that_were_not_asked_are_answered_with_those_that_were(p
 
 
 def test_prompts_are_listed(polyfold):
-    assert {"subgoals@v1", "fold_line@v1"} <= set(polyfold("prompt", "list").out.split())
+    assert {"subgoals@v2", "fold_line@v2"} <= set(polyfold("prompt", "list").out.split())

@@ -27,10 +27,10 @@ def test_a_cassette_is_filled_while_a_run_goes_on_and_does_not_count(tmp_path, b
 @pytest.mark.parametrize(
     ("planner", "asks"),
     [
-        ("hierarchical", {"subgoals@v1", "fold_line@v1", "fold_line@image-v1"}),
-        ("direct-1arm", {"subgoals@v1", "direct_1arm@v1", "direct_1arm@keypoints-v1"}),
-        ("direct-2arm", {"subgoals@v1", "direct_2arm@v1", "direct_2arm@keypoints-v1"}),
-        ("zero-shot-vlm", {"zero_shot@v1"}),
+        ("hierarchical", {"subgoals@v2", "fold_line@v2", "fold_line@image-v2"}),
+        ("direct-1arm", {"subgoals@v2", "direct_1arm@v2", "direct_1arm@keypoints-v2"}),
+        ("direct-2arm", {"subgoals@v2", "direct_2arm@v2", "direct_2arm@keypoints-v2"}),
+        ("zero-shot-vlm", {"zero_shot@v2"}),
     ],
 )
 def test_the_prompts_of_planners_count(planner, asks):

@@ -1,5 +1,6 @@
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,11 +13,12 @@ from polyfold_standard.templates.tshirt import tshirt_template
 from experiments.benchmarks.fitting.real import rasterised
 from polyfold import plugins
 from polyfold.errors import GroundingError
-from polyfold.geometry import rotate
+from polyfold.geometry import Camera, rotate
 from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins.interfaces import Grounding
 from polyfold.polygon import SymmetricGenerator, Template, angle_range, ratio_range
 
+SEEN = SimpleNamespace(camera=Camera())
 SAMPLE = Path(__file__).parents[1] / "data" / "artf_sample.jsonl"
 
 
@@ -38,7 +40,7 @@ def renamed(vertices, truth):
 @pytest.mark.parametrize(("seed", "angle"), [(2001, 0.2), (2002, 1.7), (2003, -2.6)])
 def test_flat_garments_are_fitted_at_any_rotation(grounding, kind, seed, angle):
     mask, truth = flat_garment(kind, seed, angle)
-    scene = grounding.ground(None, mask, template_of(kind))
+    scene = grounding.ground(SEEN, mask, template_of(kind))
     found = renamed(scene.model.rest, truth) if template_of(kind).cyclic else scene.model.rest
     errors = np.hypot(*(found - truth).T)
     assert errors.mean() < 6.0
@@ -49,12 +51,12 @@ def test_flat_garments_are_fitted_at_any_rotation(grounding, kind, seed, angle):
 
 def test_the_scene_is_ready_for_planning(grounding):
     mask, _ = flat_garment("tshirt", 2004, 0.1)
-    scene = grounding.ground(None, mask, tshirt_template())
+    scene = grounding.ground(SEEN, mask, tshirt_template())
     assert isinstance(grounding, Grounding)
     assert scene.kind == "tshirt"
     assert scene.image_size == (400, 400)
     assert json.loads(scene.text)["vertices"].keys() == set(tshirt_template().names)
-    assert scene.text == scene.model.to_text((400, 400))
+    assert scene.text == scene.model.to_text((400, 400), SEEN.camera.pixels_per_metre)
     assert scene.notes == ()
     assert np.array_equal(scene.mask, mask)
 
@@ -63,7 +65,7 @@ def test_the_lines_of_sleeves_are_near_the_true_ones(grounding):
     turns = []
     for seed in range(2020, 2032):
         mask, truth = flat_garment("tshirt", seed, 0.1)
-        found = grounding.ground(None, mask, tshirt_template()).model.rest
+        found = grounding.ground(SEEN, mask, tshirt_template()).model.rest
         for side in ("left", "right"):
             ends = [tshirt_template().names.index(f"{name}_{side}") for name in ("armpit", "shoulder")]
             angles = [np.arctan2(*(points[ends[1]] - points[ends[0]])) for points in (found, truth)]
@@ -74,7 +76,7 @@ def test_the_lines_of_sleeves_are_near_the_true_ones(grounding):
 @pytest.mark.parametrize("angle", [-2.0, -0.5, 0.3, 1.2, 3.0])
 def test_a_square_is_named_by_the_edge_nearest_the_top(grounding, angle):
     corners = rotate([(-80, 80), (-80, -80), (80, -80), (80, 80)], angle) + 200
-    model = grounding.ground(None, fill_polygon(corners, 400, 400), template_of("square")).model
+    model = grounding.ground(SEEN, fill_polygon(corners, 400, 400), template_of("square")).model
     point = dict(zip(model.names, model.rest, strict=True))
     top = (point["top_left"] + point["top_right"])[1]
     for a, b in (("top_right", "bottom_right"), ("bottom_right", "bottom_left"), ("bottom_left", "top_left")):
@@ -85,7 +87,7 @@ def test_a_square_is_named_by_the_edge_nearest_the_top(grounding, angle):
 def test_the_pattern_search_of_the_paper_comes_to_the_same():
     mask, truth = flat_garment("pants", 2005, 2.2)
     config = PolygonGrounding.Config(optimizer="pattern", rotations=12)
-    found = PolygonGrounding(config).ground(None, mask, template_of("pants")).model.rest
+    found = PolygonGrounding(config).ground(SEEN, mask, template_of("pants")).model.rest
     assert np.hypot(*(found - truth).T).mean() < 8.0
 
 
@@ -102,7 +104,7 @@ def test_a_template_from_elsewhere_needs_nothing_but_the_public_interface(ground
         penalties=[ratio_range(waist, hem, 0.3, 0.9), angle_range(waist, hem, -15, 15)],
     )
     truth = rotate([(-110, 90), (-60, -80), (55, -85), (120, 80)], 2.4) + 200
-    scene = grounding.ground(None, fill_polygon(truth, 400, 400), skirt)
+    scene = grounding.ground(SEEN, fill_polygon(truth, 400, 400), skirt)
     np.testing.assert_allclose(scene.model.rest, truth, atol=4.0)
     assert json.loads(scene.text)["garment"] == "skirt"
 
@@ -113,14 +115,14 @@ def test_real_outlines_are_explained(grounding, garment, template):
     residuals = []
     for row in (row for row in rows if row["garment"] == garment):
         mask, _ = rasterised(row)
-        residuals.append(grounding.ground(None, mask, template()).residual)
+        residuals.append(grounding.ground(SEEN, mask, template()).residual)
     assert len(residuals) > 2
     assert np.median(residuals) < 5.0
 
 
 def test_covered_vertices_may_lie_inside_the_cloth(grounding):
     outline = np.array([(-80, 60), (-100, 60), (-70, -70), (70, -70), (100, 60), (0, 62)]) * (1.2, 1.0) + 200
-    model = grounding.ground(None, fill_polygon(outline, 400, 400), shorts_template()).model
+    model = grounding.ground(SEEN, fill_polygon(outline, 400, 400), shorts_template()).model
     crotch = dict(zip(model.names, model.rest, strict=True))["crotch"]
     assert crotch[1] < 255.0  # the closed legs end at 260
 
@@ -128,4 +130,4 @@ def test_covered_vertices_may_lie_inside_the_cloth(grounding):
 def test_too_little_cloth_is_refused_with_advice(grounding):
     for mask in (np.zeros((400, 400), bool), fill_polygon([(5, 5), (15, 5), (15, 15)], 400, 400)):
         with pytest.raises(GroundingError, match="check the segmentation"):
-            grounding.ground(None, mask, tshirt_template())
+            grounding.ground(SEEN, mask, tshirt_template())

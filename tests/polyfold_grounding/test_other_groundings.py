@@ -58,7 +58,9 @@ def test_a_folded_garment_has_nameless_corners_of_its_outline(shirt):
     for name in ("hem_left", "hem_right", "sleeve_top_right", "shoulder_left"):
         assert np.hypot(*(corners - points[name]).T).min() < 8, name
     assert np.hypot(*(corners - points["sleeve_top_left"]).T).min() > 20
-    assert "sleeve" not in scene.text
+    assert all("sleeve" not in name for name in json.loads(scene.text) if name != "flat")
+    flat = json.loads(scene.text)["flat"]
+    assert flat == points_of(ground("keypoints", mask, "tshirt")), "where they lay before the fold stays known"
 
 
 def test_names_stay_while_nothing_is_folded(shirt):

@@ -281,3 +281,36 @@ def test_the_default_never_imports_litellm():
         "sys.exit('litellm' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_what_repeats_is_marked_for_claudes_cache_and_what_came_from_a_cache_is_counted(server):
+    usage = {"prompt_tokens": 900, "completion_tokens": 9, "prompt_tokens_details": {"cached_tokens": 800}}
+    server.script = Script(Sent({**completion(GOOD), "usage": usage}))
+    examples = [{"role": "user", "content": "One?"}, {"role": "assistant", "content": "1"}]
+    question = [QUESTION[0], *examples, QUESTION[1]]
+    reply = connect(server, "openrouter/anthropic/claude-sonnet-4.5", unlisted=True).complete(question, {})
+    assert reply.usage["cached_tokens"] == 800
+    sent = server.received[0].body["messages"]
+    assert [isinstance(message["content"], list) for message in sent] == [True, False, True, False]
+    assert all("cache_control" in sent[at]["content"][0] for at in (0, 2))
+    connect(server, ROUTES[1]).complete(question, {})
+    assert all(isinstance(message["content"], str) for message in server.received[1].body["messages"])
+
+
+def test_a_json_answer_asked_of_anthropic_itself_goes_as_a_schema_and_comes_back_as_prompts_want_it(server):
+    """litellm 1.106.2 drops json_object on this route."""
+    told = json.dumps({"reasoning": "One fold.", "answer": '{"subgoals": ["fold the left edge to the right edge"]}'})
+    body = {
+        "id": "msg_1",
+        "type": "message",
+        "role": "assistant",
+        "model": "claude-sonnet-4-5",
+        "content": [{"type": "text", "text": told}],
+        "stop_reason": "end_turn",
+        "usage": {"input_tokens": 5, "output_tokens": 7},
+    }
+    server.script = Script(Sent(body))
+    model = connect(server, "anthropic/claude-sonnet-4-5", unlisted=True)
+    reply = model.complete(QUESTION, {"response_format": {"type": "json_object"}})
+    assert set(server.received[0].body["output_format"]["schema"]["properties"]) == {"reasoning", "answer"}
+    assert reply.text == 'One fold.\n\n```json\n{"subgoals": ["fold the left edge to the right edge"]}\n```'

@@ -82,7 +82,7 @@ def test_the_prompt_explains_what_the_scene_shows():
     points = replace(scene(), text=text, shown=("keypoints",))
     _, conversation = plan("direct-2arm", TWO, on=points)
     assert "points without names" in conversation.calls[0].messages[0]["content"]
-    with pytest.raises(ConfigError, match="image-v1"):
+    with pytest.raises(ConfigError, match="image-v2"):
         plan("direct-2arm", TWO, on=replace(scene(), picture=PICTURE, shown=("image",)))
 
 

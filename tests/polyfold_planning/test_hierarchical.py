@@ -6,11 +6,12 @@ import json
 
 import numpy as np
 import pytest
-from polyfold_planning.grammar import check_subgoal
-from polyfold_planning.hierarchical import HierarchicalPlanner
+from polyfold_planning.answers.grammar import check_subgoal
+from polyfold_planning.planners.hierarchical import HierarchicalPlanner
 
 from experiments.benchmarks.language.understanding import laid_garment
 from polyfold.errors import PlanError, RefusedError
+from polyfold.geometry import FoldLine
 from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins import create
 from polyfold.rollout._transcript import Transcript
@@ -137,3 +138,24 @@ def test_the_grammar_takes_anchored_subgoals(kind, text):
 def test_the_grammar_refuses_others(kind, text):
     with pytest.raises(PlanError):
         check_subgoal(text, create("garments", kind).template())
+
+
+def test_a_line_that_lifts_the_wrong_side_goes_back():
+    found, conversation = plan(line(200, 340, 200, 60), GOOD)
+    assert found.start == (200.0, 60.0)
+    assert "on the side that stays" in conversation.calls[1].messages[-1]["content"]
+
+
+def test_what_was_done_is_told_and_can_be_said_to_have_come_open():
+    first, second = Subgoal("fold the left edge to the middle line"), SUBGOAL
+    left = line(150, 340, 150, 60)
+    conversation = Transcript(Scripted(left, {"undone": "fold the sky"}, {"undone": first.text}, left, GOOD))
+    planner = HierarchicalPlanner()
+    assert isinstance(planner.plan(first, scene("rectangle"), conversation), FoldLine)
+    assert planner.plan(second, scene("rectangle"), conversation) == first
+    assert "has not been done" in conversation.calls[2].messages[-1]["content"]
+    planner.plan(first, scene("rectangle"), conversation)
+    planner.plan(second, scene("rectangle"), conversation)
+    asked = [call.messages[-1]["content"] for call in conversation.calls]
+    told = f'Done so far: ["{first.text}"]'
+    assert [told in text for text in (asked[0], asked[1], asked[3], asked[4])] == [False, True, False, True]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from polyfold_planning.replies import answer_object, fold_line_in, subgoals_in
+from polyfold_planning.answers.replies import answer_object, fold_line_in, subgoals_in
 
 from polyfold.errors import PlanError, RefusedError
 from polyfold.types import Reply

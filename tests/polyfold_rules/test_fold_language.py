@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from polyfold_planning.grammar import check_subgoal
+from polyfold_planning.answers.grammar import check_subgoal
 from polyfold_rules.clauses.meaning import understand
 from polyfold_rules.shapes.folds import CORNERS, EDGES, OPPOSITE_CORNER, Fold, say
 from polyfold_rules.shapes.parts import Garment, NotUnderstoodError
@@ -236,15 +236,15 @@ def test_misspellings_are_read_and_mentioned():
     assert any("sleeev" in note for note in meaning.notes)
 
 
-def test_anonymous_keypoints_are_enough_for_halves_but_not_for_sleeves(rules):
+def test_anonymous_vertices_are_enough_for_halves_but_not_for_sleeves(rules):
     corners = [(100, 100), (300, 100), (300, 300), (100, 300)]
     model = {
         "garment": "tshirt",
         "image": {"width": 400, "height": 400},
-        "vertices": {f"p{i}": {"x": x, "y": y} for i, (x, y) in enumerate(corners)},
+        "vertices": {f"p{i}": [x, y] for i, (x, y) in enumerate(corners)},
     }
     prompt = load_prompt("fold_line")
-    half = rules.complete(prompt.render(model=model, subgoal="fold the left side to the right side"), {})
+    half = rules.complete(prompt.render(model=model, done=[], subgoal="fold the left side to the right side"), {})
     assert '"fold_line"' in half.text
-    sleeve = rules.complete(prompt.render(model=model, subgoal="fold the left sleeve inward to the body"), {})
+    sleeve = rules.complete(prompt.render(model=model, done=[], subgoal="fold the left sleeve inward to the body"), {})
     assert '"refused"' in sleeve.text

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from experiments.benchmarks.language.understanding import folded_states, laid_garment
 from polyfold.errors import RefusedError
+from polyfold.geometry import Camera
 from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins import create, find
 from polyfold.rollout._transcript import Transcript
@@ -18,6 +20,7 @@ from polyfold.types import Scene, Subgoal
 
 SUITE = load_suite(str(find("tasks", "polyfold70").target))
 SEED = 2005
+SEEN = SimpleNamespace(camera=Camera())
 PICTURE = np.full((400, 400, 3), 90, np.uint8)
 
 
@@ -39,13 +42,13 @@ def scene_of(kind, task=None, folds=0, words="keypoints", **more) -> Scene:
     model, size = laid.model, laid.size
     lines = fold_lines(SUITE.task(task), dict(zip(model.names, model.rest, strict=True)))[:folds] if task else []
     grounding, template = create("groundings", "keypoints"), create("garments", kind).template()
-    flat = grounding.ground(None, mask_of(model, size), template)
+    flat = grounding.ground(SEEN, mask_of(model, size), template)
     for line in lines:
         model = model.fold(line)
     if words == "polygon":
         mask = mask_of(model, size)
         return replace(Scene(kind, size, mask, model.outline(), model, model.to_text(size)), **more)
-    scene = grounding.ground(None, mask_of(model, size), template, flat, lines[-1]) if lines else flat
+    scene = grounding.ground(SEEN, mask_of(model, size), template, flat, lines[-1]) if lines else flat
     return replace(scene, **more)
 
 
@@ -75,7 +78,7 @@ def test_named_and_then_nameless_keypoints_are_enough_on_ideal_folds(name, rules
     template, planner = create("garments", task.garment).template(), create("planners", "hierarchical")
     grounding, model, scene, lines = create("groundings", "keypoints"), laid.model, None, []
     for subgoal in planner.subgoals(task.instructions[0], template, Transcript(rules)):
-        scene = grounding.ground(None, mask_of(model, laid.size), template, scene, lines[-1] if lines else None)
+        scene = grounding.ground(SEEN, mask_of(model, laid.size), template, scene, lines[-1] if lines else None)
         lines.append(planner.plan(subgoal, scene, Transcript(rules)))
         model = model.fold(lines[-1])
     wanted = fold_lines(task, dict(zip(laid.model.names, laid.model.rest, strict=True)))
@@ -84,11 +87,24 @@ def test_named_and_then_nameless_keypoints_are_enough_on_ideal_folds(name, rules
     assert np.hypot(*(ours - theirs)[moved].T).mean() < 0.05 * np.ptp(laid.particles, axis=0).max()
 
 
-def test_what_the_outline_can_not_tell_is_said(rules):
-    scene = scene_of("rectangle", "rectangle-middle-left-right", 1)
-    _, said = plan("hierarchical", "fold the right edge inward to the middle line", scene, rules)
-    assert "no names" in said
-    assert "can't tell" in said
+def test_the_middle_line_is_that_of_the_flat_cloth_though_only_the_outline_is_seen(rules):
+    line, _ = plan(
+        "hierarchical",
+        "fold the right edge inward to the middle line",
+        scene_of("rectangle", "rectangle-middle-left-right", 1),
+        rules,
+    )
+    flat = laid_garment("rectangle", SEED).model
+    corners = dict(zip(flat.names, flat.rest, strict=True))
+    for name, other in (("top_right", "top_left"), ("bottom_right", "bottom_left")):
+        middle = (corners[name] + corners[other]) / 2
+        assert np.hypot(*(line.mirror(corners[name]) - middle)) < 8
+
+
+def test_words_without_vertices_are_refused_with_what_is_missing(rules):
+    text = json.dumps({"garment": "square", "image": {"width": 400, "height": 400}, "corners": [[1, 2]]})
+    with pytest.raises(RefusedError, match=r"lacks vertices and keypoints \(it has garment, image, corners"):
+        plan("hierarchical", "fold the left edge to the right edge", scene_of("square", text=text), rules)
 
 
 @pytest.mark.parametrize(

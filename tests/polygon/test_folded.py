@@ -243,19 +243,26 @@ def test_text_is_strict_json_in_a_stable_order():
     model = square().fold(FoldLine((200, 300), (200, 100)))
     text = model.to_text((400, 400))
     content = json.loads(text, parse_constant=lambda name: pytest.fail(name))
-    assert list(content) == ["garment", "image", "vertices", "edges"]
+    assert list(content) == ["garment", "image", "vertices", "flat", "outlines"]
     assert content["image"] == {"width": 400, "height": 400}
     assert list(content["vertices"]) == [*CORNERS, "fold1_start", "fold1_end"]
-    corner = content["vertices"]["top_left"]
-    assert corner == {
-        "x": 300,
-        "y": 100,
-        "description": "top_left corner (folded over, reverse side up)",
-        "layers": [1],
-        "visible": True,
+    assert content["vertices"]["top_left"] == {"at": [300, 100], "layers": [1]}
+    assert content["vertices"]["top_right"] == {"at": [300, 100], "hidden": True}
+    assert content["vertices"]["fold1_start"]["layers"] == [0, 1]
+    assert content["flat"] == {"bottom_left": [100, 300], "top_left": [100, 100]}
+    assert {frozenset(piece) for piece in content["outlines"]["1"]} == {
+        frozenset({"bottom_left", "top_left", "fold1_start", "fold1_end"})
     }
-    assert ["fold1_end", "fold1_start", "crease"] in [sorted(e[:2]) + e[2:] for e in content["edges"]["1"]]
     assert text == square().fold(FoldLine((200, 300), (200, 100))).to_text((400, 400))
+
+
+def test_the_text_of_flat_cloth_says_where_its_vertices_lie_and_no_more():
+    content = json.loads(square().to_text((400, 400), pixels_per_metre=512.3))
+    assert content["image"] == {"width": 400, "height": 400, "px_per_cm": 5.12}
+    assert content["vertices"]["top_left"] == [100, 100]
+    assert set(content) == {"garment", "image", "vertices"}
+    odd = FoldedModel(square().rest, ("a", "b", "c", "d"), {"a": "left strap", "b": "b", "c": "c", "d": "d"})
+    assert json.loads(odd.to_text((400, 400)))["vertices"]["a"] == {"at": [100, 300], "is": "left strap"}
 
 
 @pytest.mark.parametrize("allowance", [12.0, 0.0, -8.0])
@@ -289,6 +296,17 @@ def test_allowances_are_kept_when_the_model_moves_or_loses_a_fold():
         FoldedModel(model.rest, model.names, {}, model.folds, "square", (1.0,))
 
 
+def test_creases_keep_their_numbers_when_an_earlier_flap_comes_open():
+    twice = square().fold(FoldLine((200, 300), (200, 100))).fold(FoldLine((100, 200), (400, 200)))
+    opened = twice.without(1)
+    assert opened.numbers == (2,)
+    assert {name for name in opened.points() if name.startswith("fold")} == {"fold2_start", "fold2_end"}
+    again = opened.fold(FoldLine((200, 300), (200, 100)))
+    assert again.numbers == (2, 3)
+    assert {"fold2_start", "fold3_end"} <= set(again.points())
+    assert again.transformed(0.1).numbers == again.before(2).numbers == (2, 3)
+
+
 def test_plies_are_counted_at_the_crease():
     once = square().fold(FoldLine((200, 300), (200, 100)))
     assert square().plies(FoldLine((200, 300), (200, 100))) == pytest.approx(1.0)
@@ -303,7 +321,7 @@ def test_vertices_that_a_fold_brings_onto_each_other_stay_together_when_it_comes
     for a, b in (("top_left", "top_right"), ("bottom_left", "bottom_right")):
         np.testing.assert_array_equal(found[a], found[b])
     shown = json.loads(model.to_text((400, 400)))["vertices"]
-    assert [shown["top_left"][k] for k in "xy"] == [shown["top_right"][k] for k in "xy"]
+    assert shown["top_left"]["at"] == shown["top_right"]["at"]
     apart = square().fold(FoldLine((202, 300), (203, 100))).points()
     assert np.hypot(*(apart["top_left"] - apart["top_right"])) > 4.0
     np.testing.assert_allclose(found["top_right"], (apart["top_left"] + apart["top_right"]) / 2, atol=1e-9)
@@ -327,7 +345,8 @@ def test_a_corner_folded_in_keeps_the_edges_of_its_flap_where_the_bend_uses_up_c
     flat = FoldedModel(corners, names, {}, kind="square")
     for allowance in (-6.0, 0.0, 6.0):
         folded = flat.fold(FoldLine.moving(corners[0], corners.mean(axis=0)), allowance)
-        edges = json.loads(folded.to_text((400, 400)))["edges"]
+        outlines = json.loads(folded.to_text((400, 400)))["outlines"]
         for layer in ("0", "1"):
-            assert [edge[2:] for edge in edges[layer] if "fold1_start" in edge and "fold1_end" in edge] == [["crease"]]
-        assert {"bottom_left"} < {name for edge in edges["1"] for name in edge}
+            (piece,) = outlines[layer]
+            assert abs(piece.index("fold1_start") - piece.index("fold1_end")) in (1, len(piece) - 1), "the crease"
+        assert {"bottom_left"} < set(outlines["1"][0])

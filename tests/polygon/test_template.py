@@ -65,9 +65,8 @@ def test_jacobians_match_differences(template):
 
 def test_text_names_everything_once(template):
     content = json.loads(template.to_text())
-    assert list(content) == ["garment", "vertices", "parts", "edges"]
+    assert list(content) == ["garment", "vertices", "parts"]
     assert list(content["vertices"]) == list(template.names)
-    assert len(content["edges"]) == len(template.names)
     assert {name for members in content["parts"].values() for name in members} <= set(template.names)
 
 

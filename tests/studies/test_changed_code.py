@@ -46,9 +46,9 @@ class MyPlugin:
         (self.package / "prompts" / "subgoals").mkdir(parents=True)
         (self.package / "__init__.py").write_text("")
         self.prompt = self.package / "prompts" / "subgoals" / "mine.md"
-        text = (PROMPTS / "subgoals" / "v1.md").read_text("utf-8")
-        self.prompt.write_text(text.replace("version: v1", "version: mine", 1))
-        for examples in (PROMPTS / "subgoals").glob("v1.*.jsonl"):
+        text = (PROMPTS / "subgoals" / "v2.md").read_text("utf-8")
+        self.prompt.write_text(text.replace("version: v2", "version: mine", 1))
+        for examples in (PROMPTS / "subgoals").glob("v2.*.jsonl"):
             shutil.copy(examples, self.prompt.parent)
         self.install("0.1.0")
 

@@ -68,6 +68,7 @@ def _across(line: FoldLine, shape: Shape) -> FoldLine:
 
 def _sleeve(fold: Fold, shape: Shape) -> Crease:
     side = fold.part
+    _still_there(f"sleeve_top_{side}", f"{side} sleeve", shape)
     top = "shoulder" if fold.manner == "straight" else "neck"
     armpit, upper = (_flat(f"{name}_{side}", shape) for name in ("armpit", top))
     cuff = (_flat(f"sleeve_top_{side}", shape) + _flat(f"sleeve_bottom_{side}", shape)) / 2
@@ -81,6 +82,12 @@ def _sleeve(fold: Fold, shape: Shape) -> Crease:
     )
 
 
+def _still_there(name: str, part: str, shape: Shape) -> None:
+    """Refuse to fold what an outline no longer shows where it lay."""
+    if shape.nameless and name in shape.flat and shape.now(name) is None:
+        raise NotUnderstoodError(f"the {part} is not seen where it lay: it was folded in already")
+
+
 def _flat(name: str, shape: Shape) -> Point:
     point = shape.flat.get(name, shape.points.get(name))
     if point is None:
@@ -91,6 +98,7 @@ def _flat(name: str, shape: Shape) -> Point:
 def _corner(fold: Fold, shape: Shape) -> Crease:
     pick = _corner_now(fold.part, shape)
     if fold.target == "centre":
+        _still_there(fold.part, f"{fold.part.replace('_', ' ')} corner", shape)
         place, name = _centre(shape), "the centre of the cloth"
     else:
         place, name = _corner_now(fold.target, shape), fold.target
@@ -106,8 +114,8 @@ def _corner(fold: Fold, shape: Shape) -> Crease:
 
 
 def _corner_now(corner: str, shape: Shape) -> Point:
-    if corner in shape.points:
-        return shape.points[corner]
+    if corner in shape.flat and (now := shape.now(corner)) is not None:
+        return now
     outline = shape.outline()
     vertical, horizontal = corner.split("_")
     toward = np.array(_IMAGE_AXES[vertical]) + np.array(_IMAGE_AXES[horizontal])
@@ -115,13 +123,9 @@ def _corner_now(corner: str, shape: Shape) -> Point:
 
 
 def _centre(shape: Shape) -> Point:
-    for source in (shape.flat, shape.points):
-        known = [source[corner] for corner in CORNERS if corner in source]
-        if len(known) == 4:
-            return np.mean(known, axis=0)
-    for a, b in (("bottom_left", "top_right"), ("top_left", "bottom_right")):
-        if a in shape.flat and b in shape.flat:
-            return (shape.flat[a] + shape.flat[b]) / 2
+    known = [shape.flat[corner] for corner in CORNERS if corner in shape.flat]
+    if len(known) == 4:
+        return np.mean(known, axis=0)
     outline = shape.outline()
     return (outline.min(0) + outline.max(0)) / 2
 
@@ -167,7 +171,8 @@ def _edge_moved(edge: str, line: FoldLine, shape: Shape) -> bool:
     extent = float(flat.max() - flat.min())
     for side in (edge, OPPOSITE_EDGE[edge]):
         for name in edge_vertices(shape.flat, side):
-            if abs(abs(line.distance(shape.points[name])) - abs(line.distance(shape.flat[name]))) > _MOVED * extent:
+            now = shape.now(name)
+            if now is None or abs(abs(line.distance(now)) - abs(line.distance(shape.flat[name]))) > _MOVED * extent:
                 return True
     return shape.folds > 0 and not _still_spread(line, shape, extent)
 

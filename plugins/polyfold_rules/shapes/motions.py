@@ -54,22 +54,18 @@ class Points:
     size: tuple[int, int]
 
     @classmethod
-    def of_polygon(cls, positions: Mapping[str, Floats], edges: Mapping[str, Any], size: tuple[int, int]) -> Points:
-        """Vertices by name with the edges of every layer.
+    def of_polygon(cls, positions: Mapping[str, Floats], outlines: Mapping[str, Any], size: tuple[int, int]) -> Points:
+        """Vertices by name with the outlines of every layer's pieces.
 
         Args:
             positions: name -> position [px], shape (2,).
-            edges: layer -> pairs of names.
+            outlines: layer -> pieces, each the names of the vertices around it.
             size: (width, height) of the image [px].
         """
         names = tuple(positions)
         index = {name: i for i, name in enumerate(names)}
-        joined = {
-            (index[edge[0]], index[edge[1]])
-            for layer in edges.values()
-            for edge in layer
-            if edge[0] in index and edge[1] in index
-        }
+        loops = [[index[name] for name in piece if name in index] for layer in outlines.values() for piece in layer]
+        joined = {pair for loop in loops for pair in zip(loop, loop[1:] + loop[:1], strict=True) if len(loop) > 1}
         return cls(names, np.array([positions[name] for name in names]), tuple(sorted(joined)), size)
 
     @classmethod

@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.geometry import mirror
+from polyfold_rules.shapes.parts import NotUnderstoodError
 
 Point = NDArray[np.float64]
 
 _CREASE = re.compile(r"fold(\d+)_(start|end)")
+_SEEN = 0.04
+"""A corner of the outline this near to where a vertex lay, as a share of the outline's extent, is that vertex."""
+
 _EDGE_WORDS = {
     "bottom": ("hem", "bottom_left", "bottom_right", "leg_outer"),
     "top": ("shoulder", "top_left", "top_right", "waist"),
@@ -23,14 +26,15 @@ _EDGE_WORDS = {
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """Vertices in an image.
+    """Vertices in an image, or corners of an outline without names.
 
     Attributes:
         kind: garment kind, empty if the text does not say.
         size: (width, height) [px].
-        points: name -> where it lies now [px], shape (2,).
-        flat: name -> where it lay on the flat garment [px], shape (2,), for the vertices of which that is certain.
+        points: name -> where it lies now [px], shape (2,); corners of an outline are called ``point 1`` and so on.
+        flat: name -> where it lay before the first fold [px], shape (2,).
         folds: how many folds the text shows.
+        pixels_per_cm: of the table; None if the text does not say.
     """
 
     kind: str
@@ -38,77 +42,63 @@ class Shape:
     points: Mapping[str, Point]
     flat: Mapping[str, Point] = field(default_factory=dict)
     folds: int = 0
+    pixels_per_cm: float | None = None
 
     @classmethod
     def from_text(cls, content: Mapping[str, Any]) -> Shape:
-        """Read a decoded model text; vertices without usable coordinates are passed over."""
+        """Read a decoded model text; vertices without usable coordinates are passed over.
+
+        Raises:
+            NotUnderstoodError: if it shows nothing that a fold could be read from; it says what is missing.
+        """
         image = content.get("image")
-        if not isinstance(image, Mapping):
-            image = {}
+        image = image if isinstance(image, Mapping) else {}
         size = (int(image.get("width", 400)), int(image.get("height", 400)))
-        entries = _entries(content)
-        points = {name: np.array([float(e["x"]), float(e["y"])]) for name, e in entries.items()}
-        layers = {name: sorted(int(i) for i in e.get("layers", [0])) or [0] for name, e in entries.items()}
-        folds = max((int(found[1]) for name in points if (found := _CREASE.fullmatch(name))), default=0)
-        flat = _unfolded(points, layers, folds)
-        return cls(str(content.get("garment", "")), size, points, flat, folds)
+        points = _places(content.get("vertices", content.get("keypoints")))
+        before = _places(content.get("flat"))
+        nameless = isinstance(content.get("keypoints"), list)
+        if len(points) < 3 or (nameless and len(before) < 3):
+            lacks = "points without names, and not where they lay when flat" if nameless and points else "no vertices"
+            raise NotUnderstoodError(
+                f"the cloth is described by {lacks}; choose a grounding whose text holds them, such as polygon"
+            )
+        folds = max((int(found[1]) for name in points if (found := _CREASE.fullmatch(name))), default=int(nameless))
+        named = {} if nameless else {name: point for name, point in points.items() if not _CREASE.fullmatch(name)}
+        return cls(str(content.get("garment", "")), size, points, named | before, folds, image.get("px_per_cm") or None)
+
+    @property
+    def nameless(self) -> bool:
+        """Whether the points that are seen now have no names."""
+        return "point 1" in self.points
 
     @property
     def named(self) -> bool:
-        """Whether the vertices have meaningful names."""
-        return bool(edge_vertices(self.points, "left")) and bool(edge_vertices(self.points, "bottom"))
+        """Whether the flat garment's vertices have names that tell of edges."""
+        return bool(edge_vertices(self.flat, "left")) and bool(edge_vertices(self.flat, "bottom"))
+
+    def now(self, name: str) -> Point | None:
+        """Where a vertex of the flat garment lies now [px], shape (2,); None where that is not seen."""
+        if not self.nameless:
+            return self.points.get(name)
+        outline = self.outline()
+        far = np.hypot(*(outline - self.flat[name]).T)
+        return outline[int(far.argmin())] if far.min() < _SEEN * np.ptp(outline, axis=0).max() else None
 
     def outline(self) -> NDArray[np.float64]:
         """All positions now [px], shape (N, 2)."""
         return np.array(list(self.points.values()))
 
 
-def _entries(content: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
-    raw = content.get("vertices", content.get("keypoints", {}))
-    if isinstance(raw, list):
-        raw = {str(e.get("name", f"p{i}")) if isinstance(e, Mapping) else f"p{i}": e for i, e in enumerate(raw)}
+def _places(entries: Any) -> dict[str, Point]:
+    """Name -> where it lies [px]; entries are ``[x, y]`` or ``{"at": [x, y], ...}``, and others are passed over."""
+    if isinstance(entries, list):
+        entries = {f"point {number}": entry for number, entry in enumerate(entries, 1)}
     found = {}
-    for name, entry in raw.items():
-        if isinstance(entry, (list, tuple)) and len(entry) == 2:
-            entry = {"x": entry[0], "y": entry[1]}
-        if isinstance(entry, Mapping) and all(isinstance(entry.get(axis), (int, float)) for axis in "xy"):
-            found[str(name)] = entry
+    for name, entry in entries.items() if isinstance(entries, Mapping) else ():
+        at = entry.get("at") if isinstance(entry, Mapping) else entry
+        if isinstance(at, (list, tuple)) and len(at) == 2 and all(isinstance(value, (int, float)) for value in at):
+            found[str(name)] = np.array(at, float)
     return found
-
-
-def _unfolded(points: Mapping[str, Point], layers: Mapping[str, list[int]], folds: int) -> dict[str, Point]:
-    """Undo the folds, last one first.
-
-    A fold turns layer l into S - l, where S is one number for the whole fold: the sum of the lowest and the highest
-    layer that meet at its crease. Layers between those that meet there could have been lifted whole; that is rare, so
-    they are taken to have stayed.
-    """
-    flat = {name: point for name, point in points.items() if not _CREASE.fullmatch(name)}
-    level = {name: layers[name][0] for name in flat}
-    creases = {n: points[n] for n in points if _CREASE.fullmatch(n)}
-    crease_layers = {n: list(layers[n]) for n in creases}
-    for number in range(folds, 0, -1):
-        ends = [f"fold{number}_start", f"fold{number}_end"]
-        if not all(end in creases for end in ends):
-            return {name: point for name, point in flat.items() if level[name] == 0}
-        meeting = sorted({layer for end in ends for layer in crease_layers[end]})
-        start, end = creases[ends[0]], creases[ends[1]]
-        if len(meeting) < 2 or np.hypot(*(end - start)) < 1.0:
-            return {name: point for name, point in flat.items() if level[name] == 0}
-        total = meeting[0] + meeting[-1]
-        # Flaps of earlier folds may touch the crease's end without belonging to it: they lack a counterpart.
-        paired = {layer for end in ends for layer in crease_layers[end] if total - layer in crease_layers[end]}
-        moved = min((layer for layer in paired if 2 * layer > total), default=meeting[-1])
-        for name in list(flat):
-            if level[name] >= moved:
-                flat[name], level[name] = mirror(flat[name], start, end), total - level[name]
-        for name in (f"fold{k}_{which}" for k in range(1, number) for which in ("start", "end")):
-            if name in creases:
-                back = [total - layer for layer in crease_layers[name] if layer >= moved]
-                if back and all(layer >= moved for layer in crease_layers[name]):
-                    creases[name] = mirror(creases[name], start, end)
-                crease_layers[name] = sorted({layer for layer in crease_layers[name] if layer < moved} | set(back))
-    return flat
 
 
 def edge_vertices(points: Mapping[str, Point], edge: str) -> list[str]:

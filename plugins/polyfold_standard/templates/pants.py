@@ -47,7 +47,7 @@ def two_legged(
     words = {
         "leg_inner": "inner corner of the {side} leg's end",
         "leg_outer": "outer corner of the {side} leg's end",
-        "waist": "{side} end of the waistband",
+        "waist": "{side} end of the waist",
     }
     descriptions = {f"{name}_{side}": text.format(side=side) for name, text in words.items() for side in SIDES}
     return Template(

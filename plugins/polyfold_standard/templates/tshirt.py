@@ -81,13 +81,13 @@ def _descriptions() -> dict[str, str]:
     words = {
         "hem": "{side} corner of the hem",
         "armpit": "{side} armpit",
-        "sleeve_bottom": "lower end of the {side} sleeve's cuff",
-        "sleeve_top": "upper end of the {side} sleeve's cuff",
+        "sleeve_bottom": "bottom end of the {side} sleeve's cuff",
+        "sleeve_top": "top end of the {side} sleeve's cuff",
         "shoulder": "{side} shoulder, where the sleeve begins",
-        "neck": "{side} end of the collar",
+        "neck": "{side} end of the neck opening",
     }
     named = {f"{name}_{side}": text.format(side=side) for name, text in words.items() for side in SIDES}
-    return {**named, "neck_center": "middle of the collar, its lowest point"}
+    return {**named, "neck_center": "center of the neck opening, its lowest point"}
 
 
 def _parts() -> dict[str, tuple[str, ...]]:

@@ -1,7 +1,9 @@
 import base64
 import hashlib
 import html
+import json
 import re
+import shutil
 from html.parser import HTMLParser
 
 import pytest
@@ -162,9 +164,23 @@ def test_episodes_whose_reference_moved_nothing_are_named(make_run):
     assert "tshirt-half-left on tshirt 2001" in page.text
 
 
-def test_the_noise_floor_is_a_footnote_where_it_is_given(full_run):
+@pytest.fixture
+def noise_run(full_run, tmp_path):
+    """The same run, of variants that differ in the order of particles alone."""
+    folder = tmp_path / "noise"
+    shutil.copytree(full_run, folder)
+    description = json.loads((folder / "run.json").read_text("utf-8"))
+    variants = description["asked"]["study"]["variants"]
+    description["components"] = {
+        name: {"simulator": {"name": "xpbd", "params": {"order": number}}} for number, name in enumerate(variants)
+    }
+    (folder / "run.json").write_text(json.dumps(description), "utf-8")
+    return folder
+
+
+def test_the_noise_floor_is_a_footnote_where_it_is_given(full_run, noise_run):
     assert "Noise floor" not in report_html(full_run)
-    page = report_html(full_run, noise=open_results(full_run))
+    page = report_html(full_run, noise=open_results(noise_run))
     assert "Noise floor" in page
     assert "MPPE [mm]" in page.partition("Noise floor")[2]
 
@@ -184,12 +200,12 @@ def test_the_same_run_gives_the_same_page(full_run):
     assert report_html(full_run) == report_html(full_run)
 
 
-def test_the_verb_writes_the_page_into_the_run_directory_or_where_asked(full_run, tmp_path, capsys):
+def test_the_verb_writes_the_page_into_the_run_directory_or_where_asked(full_run, noise_run, tmp_path, capsys):
     assert main(["report", str(full_run)]) == 0
     assert (full_run / "report.html").read_text("utf-8") == report_html(full_run)
     assert str(full_run / "report.html") in capsys.readouterr().out
     assert (
-        main(["report", str(full_run), "--out", str(tmp_path / "new" / "page.html"), "--noise-floor", str(full_run)])
+        main(["report", str(full_run), "--out", str(tmp_path / "new" / "page.html"), "--noise-floor", str(noise_run)])
         == 0
     )
     assert "Noise floor" in (tmp_path / "new" / "page.html").read_text("utf-8")

@@ -1,0 +1,1 @@
+"""Planners: from an instruction and what is seen to fold lines, or to picks and places."""
