@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import PlanError
-from polyfold.geometry import FoldLine, contour_of
+from polyfold.geometry import Camera, FoldLine, contour_of
 from polyfold.plugins.interfaces import Goal, Grounding, Planner, Policy, Segmenter, StepwisePlanner, action_map_later
 from polyfold.types import Action, ActionMap, Decision, Observation, Scene, Subgoal
 from polyfold_agent.recovery import Attempt, inspect
@@ -69,7 +69,8 @@ class PolyFoldAgent:
         self._last: Decision | None = None
         self._tries = 0
         self._reopened: set[str] = set()
-        self._pending = list(self._planner.subgoals(goal.instruction, goal.template, goal.conversation))
+        template = goal.template.of_size(*_size(self._segmenter.segment(observation), observation.camera))
+        self._pending = list(self._planner.subgoals(goal.instruction, template, goal.conversation))
         return tuple(self._pending)
 
     def decide(self, observation: Observation) -> Decision | None:
@@ -164,6 +165,18 @@ class PolyFoldAgent:
 def _plans_step_by_step(planner: Planner) -> bool:
     """Whether the instruction is planned again on every scene, instead of one subgoal after the other."""
     return isinstance(planner, StepwisePlanner) and not planner.decomposes
+
+
+def _size(mask: NDArray[np.bool_], camera: Camera) -> tuple[float, float]:
+    """Width and height of flat cloth [m], along the sides of the smallest rectangle around it nearest to upright."""
+    import cv2
+
+    points = np.argwhere(mask)[:, ::-1].astype(np.float32)
+    corners = cv2.boxPoints(cv2.minAreaRect(points))
+    sides = np.array([corners[1] - corners[0], corners[2] - corners[1]])
+    lengths = (np.hypot(*sides.T) + 1) / camera.pixels_per_metre
+    across = int(np.argmax(np.abs(sides[:, 0]) / np.hypot(*sides.T)))
+    return float(lengths[across]), float(lengths[1 - across])
 
 
 def _since(clock: float) -> float:

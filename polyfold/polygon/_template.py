@@ -85,6 +85,7 @@ class Template:
         self.cyclic = cyclic
         self.covered = tuple(covered)
         self.thickness: float | None = None
+        self.size_cm: tuple[int, int] | None = None
         self._check()
 
     def of_thickness(self, thickness: float) -> Template:
@@ -94,6 +95,15 @@ class Template:
         """
         template = copy.copy(self)
         template.thickness = float(thickness)
+        return template
+
+    def of_size(self, width: float, height: float) -> Template:
+        """The same template for a garment of this width and height when it lies flat and upright [m].
+
+        Language models are told it, so that they can plan for a drawer or a box.
+        """
+        template = copy.copy(self)
+        template.size_cm = (round(100 * width), round(100 * height))
         return template
 
     @property
@@ -106,14 +116,11 @@ class Template:
         return FoldedModel(np.asarray(vertices, float), self.names, self.descriptions, kind=self.kind)
 
     def to_text(self) -> str:
-        """The template for a language model: strict JSON with garment, vertices around the outline, and parts."""
+        """The template for a language model: strict JSON with garment, size if known, vertices around the outline, parts."""
+        size = {} if self.size_cm is None else {"size_cm": list(self.size_cm)}
+        parts = {part: list(members) for part, members in self.parts.items()}
         return json.dumps(
-            {
-                "garment": self.kind,
-                "vertices": self.descriptions,
-                "parts": {part: list(members) for part, members in self.parts.items()},
-            },
-            allow_nan=False,
+            {"garment": self.kind, **size, "vertices": self.descriptions, "parts": parts}, allow_nan=False
         )
 
     def _check(self) -> None:
