@@ -116,7 +116,7 @@ class Template:
         return FoldedModel(np.asarray(vertices, float), self.names, self.descriptions, kind=self.kind)
 
     def to_text(self) -> str:
-        """The template for a language model: strict JSON with garment, size if known, vertices around the outline, parts."""
+        """The template for a language model, strict JSON: garment, size if known, vertices around it, parts."""
         size = {} if self.size_cm is None else {"size_cm": list(self.size_cm)}
         parts = {part: list(members) for part, members in self.parts.items()}
         return json.dumps(
