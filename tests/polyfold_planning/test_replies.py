@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 from polyfold_planning.answers.replies import answer_object, fold_line_in, subgoals_in
 
@@ -85,3 +87,25 @@ def test_refusals_carry_their_reason():
 def test_a_cut_off_answer_is_a_plan_error():
     with pytest.raises(PlanError, match="cut off"):
         answer_object(Reply("thinking", finish="length"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'So:\r\n```json\r\n{"subgoals": ["a"]}\r\n```\r\n',
+        'So: ```json {"subgoals": ["a"]}```',
+        'So:\n```json\n{"subgoals": ["a"]}',
+        'So {not this}: {"subgoals": ["a"]}',
+        '```\n{"other": 1}\n```\n```JSON\n{"subgoals": ["a"]}\n```',
+    ],
+)
+def test_objects_are_found_however_they_are_fenced(text):
+    assert answer_object(Reply(text)) == {"subgoals": ["a"]}
+
+
+@pytest.mark.parametrize("nothing", [False, None, "", "  "])
+def test_only_words_refuse(nothing):
+    content = answer_object(Reply(json.dumps({"subgoals": ["a"], "refused": nothing})))
+    assert content == {"subgoals": ["a"]}
+    with pytest.raises(RefusedError, match="too thick"):
+        answer_object(Reply('{"subgoals": [], "refused": "too thick"}'))

@@ -12,8 +12,12 @@ from polyfold.errors import PlanError, RefusedError
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, Reply
 
-_FENCE = re.compile(r"```[ \t]*(?:json|JSON)?[ \t]*\n(.*?)```", re.DOTALL)
+_FENCE = re.compile(r"```[ \t]*(?:json\b)?\s*(.*?)\s*(?:```|\Z)", re.DOTALL | re.IGNORECASE)
+"""A fenced block, on one line or many; the last one may lack its end."""
+
 MAX_REPLY = 100_000
+_BRACES = 200
+"""So many braces are tried as the beginning of an answer that stands in no fence."""
 
 
 def answer_object(reply: Reply) -> Mapping[str, Any]:
@@ -35,22 +39,32 @@ def answer_object(reply: Reply) -> Mapping[str, Any]:
     content = _decoded(text)
     if not isinstance(content, dict):
         raise PlanError("the JSON at the end must be an object; end with one fenced ```json object")
-    if "refused" in content:
-        raise RefusedError(f"{str(content['refused'])[:500] or 'no reason given'}")
-    return content
+    reason = content.get("refused")
+    if isinstance(reason, str) and reason.strip():
+        raise RefusedError(reason.strip()[:500])
+    return {key: value for key, value in content.items() if key != "refused"}
 
 
 def _decoded(text: str) -> Any:
-    blocks = _FENCE.findall(text)
-    bare = text.strip()
-    if not blocks and bare.startswith("{") and bare.endswith("}"):
-        blocks = [bare]
+    """The JSON of the last fenced block; without any, of the object that the text ends with."""
+    blocks = [block for block in _FENCE.findall(text) if block]
     if not blocks:
-        raise PlanError("the answer has no fenced ```json block; end with exactly one")
+        return _ending(text.rstrip())
     try:
         return json.loads(blocks[-1], parse_constant=_no_constants)
     except (ValueError, RecursionError) as error:
         raise PlanError(f"the last ```json block is not valid JSON ({error}); correct it") from error
+
+
+def _ending(text: str) -> Any:
+    """The object that a text ends with, from the first brace whose object reaches the end."""
+    starts = [at for at, sign in enumerate(text) if sign == "{"] if text.endswith("}") else []
+    for start in starts[:_BRACES]:
+        try:
+            return json.loads(text[start:], parse_constant=_no_constants)
+        except (ValueError, RecursionError):
+            continue
+    raise PlanError("the answer has no fenced ```json block; end with exactly one")
 
 
 def _no_constants(name: str) -> float:
