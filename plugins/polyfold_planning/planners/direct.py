@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from polyfold.plugins.interfaces import Conversation
-from polyfold.polygon import Template
-from polyfold.types import Action, Reply, Scene, Subgoal
+from polyfold.types import Action, Scene, Subgoal
 from polyfold_planning.answers.actions import check_action
-from polyfold_planning.answers.repair import ask_until_valid
-from polyfold_planning.answers.replies import action_in, answer_object, undone_in
-from polyfold_planning.decomposition import DecompositionConfig, decompose
-from polyfold_planning.history import after
-from polyfold_planning.scene_prompts import prompt_for, prompt_inputs, prompts_for_scenes
+from polyfold_planning.answers.replies import action_in
+from polyfold_planning.decomposition import DecompositionConfig
+from polyfold_planning.scene_prompts import prompts_for_scenes
+from polyfold_planning.stepwise import Stepwise
 
 
-class _Direct:
+class _Direct(Stepwise):
     """Decomposes as ``hierarchical`` does, then asks for picks and places on what the scene shows."""
 
     role: ClassVar[str]
@@ -30,17 +29,12 @@ class _Direct:
 
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
-        self._done: list[str] = []
+        super().__init__(self._config)
 
     @classmethod
     def prompts_read(cls, config: Config) -> list[str]:
         """The prompts that it may use with these parameters, each as ``role@version``."""
         return [f"subgoals@{config.subgoals_prompt}", *prompts_for_scenes(cls.role, config.motion_prompt)]
-
-    def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
-        """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""
-        self._done = []
-        return decompose(instruction, template, conversation, self._config)
 
     def plan(self, subgoal: Subgoal, scene: Scene, conversation: Conversation) -> Action | Subgoal:
         """Picks and places for a subgoal on the scene as seen now, or an earlier subgoal that has come open.
@@ -49,20 +43,12 @@ class _Direct:
             PlanError: if no valid answer came.
         """
 
-        def read(reply: Reply) -> Action | Subgoal:
-            content = answer_object(reply)
-            if (undone := undone_in(content, self._done)) is not None:
-                return Subgoal(undone)
+        def read(content: Mapping[str, Any]) -> Action:
             action = action_in(content, self.arms)
             check_action(action, scene)
             return action
 
-        prompt = prompt_for(scene, self.role, self._config.motion_prompt)
-        values = prompt_inputs(scene, prompt, done=self._done, subgoal=subgoal.text)
-        attempts = self._config.max_attempts or prompt.max_attempts
-        found = ask_until_valid(prompt, values, read, conversation, self._config.params, attempts)
-        self._done = after(self._done, subgoal, found)
-        return found
+        return self._asked(self.role, self._config.motion_prompt, subgoal, scene, conversation, read)
 
 
 class DirectOneArm(_Direct):
