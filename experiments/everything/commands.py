@@ -66,7 +66,7 @@ COMMANDS = (
     ),
     CommandStep("physics", 0.4, (("cloth.physics", "--seed", "0", "--folds", "400", "--scaling", "--garments", "10"),)),
     CommandStep("reality", 1.0, (("cloth.reality", "--fabric", "poplin,jersey,denim"),), needs=("ipctk",)),
-    CommandStep("engines", 3.0, (("cloth.engines", "--out", "{out}"),), needs=("newton", "mujoco")),
+    CommandStep("engines", 1.0, (("cloth.engines", "--out", "{out}"),), needs=("newton", "mujoco")),
     CommandStep("twins", 0.1, (("twins", "--data", "{data}", "--out", "{out}"),)),
     CommandStep(
         "fitting",
