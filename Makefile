@@ -32,7 +32,7 @@ lint: $(LINTERS)
 	$(BIN)/lint-imports --no-cache --no-logo
 	PYRIGHT_PYTHON_IGNORE_WARNINGS=1 $(BIN)/pyright --project . --pythonpath $(BIN)/python
 
-# Every recorded table again, about ten hours of two cores, in runs/results; goes on where it was stopped.
+# Every recorded table again, about eight hours of two cores, in runs/results; goes on where it was stopped.
 results: $(INSTALLED)
 	$(BIN)/python -m experiments.everything
 

@@ -129,6 +129,6 @@ STUDIES = (
     StudyStep("ambiguous", 0.2, _table),
     StudyStep("planners", 0.5, _planners),
     StudyStep("groundings", 0.4, _groundings),
-    StudyStep("floor", 0.6, _table),
+    StudyStep("floor", 0.3, _table),
 )
 """In the order in which they are run. Rows of learned policies wait for weights trained in cloth of today's fabrics."""

@@ -64,14 +64,15 @@ def noise_floor(noise: Results) -> str:
     """
     if not _differ_in_order_alone(noise):
         raise ConfigError(
-            f"the variants of {noise.study.name} differ in more than the order of particles, so that their difference "
-            "is no noise; give a run of experiments/noise_floor.toml"
+            f"{noise.study.name} has no variants that differ in the order of particles and in nothing more, so that it "
+            "tells of no noise; give a run of experiments/noise_floor.toml"
         )
     first, *others = noise.study.variants
     known = {_place(record): record for record in noise.of(first)}
     pairs = [(known[_place(r)], r) for name in others for r in noise.of(name) if _place(r) in known]
     columns = ", ".join(f"{column.heading} {_apart(column, pairs)}" for column in columns_of(noise.run))
-    same = f"the same folds with particles and contacts in another order (n={len(pairs)})"
+    kinds = ", ".join(noise.kinds())
+    same = f"the same folds with particles and contacts in another order (n={len(pairs)}: {kinds})"
     return f"Noise floor: {same} differ by {columns}."
 
 
@@ -144,13 +145,13 @@ def _reading(results: Results) -> list[StudyEpisodeRecord]:
 def _wordings(records: Iterable[StudyEpisodeRecord]) -> str:
     """Which of the tasks' sentences were said, and which of them nothing was tuned on."""
     said = {record.wording: record.wording_unseen for record in records if record.instruction}
-    if len(said) < 2 and not any(said.values()):
+    if not said or set(said.values()) == {None}:
         return ""
-    shown = f"wordings {', '.join(map(str, sorted(said)))}"
+    shown = f"wording{'s' * (len(said) > 1)} {', '.join(map(str, sorted(said)))}"
     unseen = [str(number) for number, held_out in sorted(said.items()) if held_out]
     if len(unseen) == len(said):
         return f"{shown}, on which nothing was tuned"
-    return f"{shown}, of which nothing was tuned on {', '.join(unseen)}" if unseen else shown
+    return f"{shown}, of which nothing was tuned on {', '.join(unseen) or 'none'}"
 
 
 def _fabrics(results: Results) -> str:

@@ -41,6 +41,11 @@ def _one(record: StudyEpisodeRecord) -> float:
     return 1.0
 
 
+def _asked(record: StudyEpisodeRecord) -> float:
+    """1 where a language model was asked anything: others can't have failed for its sake."""
+    return 1.0 if record.language else 0.0
+
+
 def _total(record: StudyEpisodeRecord, taken: Taken) -> float | None:
     """The sum over an episode's roles; None if it is unknown for one, or if there was none."""
     values = [taken(account) for account in record.language.values()]
@@ -74,8 +79,8 @@ MEASURES: dict[str, Measure] = {
     "valid after repair %": Measure(
         lambda record: _total(record, lambda account: account.valid), _questions, is_share=True
     ),
-    "subgoal failures %": Measure(lambda record: float(record.cause == "subgoal"), _one, is_share=True),
-    "fold-line failures %": Measure(lambda record: float(record.cause == "fold line"), _one, is_share=True),
+    "subgoal failures %": Measure(lambda record: float(record.cause == "subgoal"), _asked, is_share=True),
+    "fold-line failures %": Measure(lambda record: float(record.cause == "fold line"), _asked, is_share=True),
     "latency [s/call]": Measure(_latency, _replies, 2),
     "tokens in": Measure(lambda record: _answered(record, lambda account: account.prompt_tokens), _one, 0),
     "cached %": Measure(

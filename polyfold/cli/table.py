@@ -8,6 +8,7 @@ from pathlib import Path
 import polyfold
 from polyfold.analysis import provider_table
 from polyfold.analysis._tables import FORMATS
+from polyfold.errors import ConfigError
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -36,6 +37,8 @@ def run(arguments: argparse.Namespace) -> int:
     found = found.of_length(arguments.steps) if arguments.steps else found
     found = found.of_wordings(arguments.wordings) if arguments.wordings else found
     noise = None if arguments.noise_floor is None else polyfold.open(arguments.noise_floor)
+    if arguments.compare and arguments.by in ("step", "provider"):
+        raise ConfigError(f"differences are not made by {arguments.by}; leave out --by, or --compare")
     if arguments.compare:
         made = polyfold.compare(found, *arguments.compare)
     elif arguments.by == "provider":

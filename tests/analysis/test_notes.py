@@ -45,7 +45,7 @@ def test_intervals_claim_no_other_garments_where_there_was_one(results):
 
 
 def test_the_noise_floor_is_of_runs_that_differ_in_order_alone(results):
-    with pytest.raises(ConfigError, match="differ in more than the order"):
+    with pytest.raises(ConfigError, match="differ in the order of particles and in nothing more"):
         polyfold.table(results, noise=results)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from experiments.benchmarks.language.understanding import folded_states, laid_garment
-from polyfold.errors import PlanError
+from polyfold.errors import ConfigError, PlanError
 from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins import create, find
 from polyfold.rollout._transcript import Transcript
@@ -99,5 +99,5 @@ def test_a_line_that_lies_off_the_cloth_as_it_will_be_goes_back_with_its_number(
 def test_a_grounding_without_a_polygon_is_refused_with_what_to_choose():
     laid = laid_garment("square", SEED)
     bare = replace(shown(laid.model, laid.size), model=None)
-    with pytest.raises(PlanError, match="--grounding polygon"):
+    with pytest.raises(ConfigError, match="--grounding polygon"):
         create("planners", "plan").plan(Subgoal("fold it"), bare, Transcript(Scripted()))

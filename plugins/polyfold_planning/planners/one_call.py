@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
-from polyfold.errors import PlanError
+from polyfold.errors import ConfigError, PlanError
 from polyfold.geometry import FoldLine
 from polyfold.plugins.interfaces import Conversation
 from polyfold.polygon import FoldedModel, Template
@@ -71,10 +71,11 @@ class OneCallPlanner:
         """The next fold line; None when all folds are done.
 
         Raises:
-            PlanError: if no valid answer came, or the scene shows no polygon model.
+            PlanError: if no valid answer came.
+            ConfigError: if the scene shows no polygon model.
         """
         if scene.model is None:
-            raise PlanError("the planner plan needs a polygon model to reckon with; choose --grounding polygon")
+            raise ConfigError("the planner plan needs a polygon model to reckon with; choose --grounding polygon")
         if self._left is None or (self._left and not self._as_expected(scene.model)):
             self._left = self._asked(subgoal, scene, conversation)
         if not self._left:
