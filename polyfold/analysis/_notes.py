@@ -151,7 +151,7 @@ def _wordings(records: Iterable[StudyEpisodeRecord]) -> str:
     unseen = [str(number) for number, held_out in sorted(said.items()) if held_out]
     if len(unseen) == len(said):
         return f"{shown}, on which nothing was tuned"
-    return f"{shown}, of which nothing was tuned on {', '.join(unseen) or 'none'}"
+    return f"{shown}, of which nothing was tuned on {', '.join(unseen)}" if unseen else f"{shown}, not an unseen one"
 
 
 def _fabrics(results: Results) -> str:

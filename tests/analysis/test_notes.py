@@ -29,6 +29,7 @@ def test_wordings_that_nothing_was_tuned_on_can_be_had_alone_and_lead(results):
     assert {record.wording for record in unseen.records} == {3, 4}
     assert len(unseen.records) + len(seen.records) == len(results.records)
     assert "wordings 3, 4, on which nothing was tuned" in polyfold.table(unseen).note
+    assert "wordings 0, 1, 2, not an unseen one" in polyfold.table(seen).note
     groups = [row[1] for row in polyfold.table(results, groups="wording").rows if row[0] == "polyfold"]
     assert groups == ["3, unseen", "4, unseen", "0", "1", "2", "all"]
     with pytest.raises(ConfigError, match="seen or unseen"):
