@@ -202,7 +202,7 @@ def test_the_same_folds_with_the_particles_in_another_order_give_the_noise_floor
     assert (apart > 0).all(), "another order"
     assert (apart < 5).all(), "the same physics"
     floor = polyfold.table(results, noise=results).note.partition("Noise floor")[2]
-    assert f"(n=4) differ by MPPE [mm] {apart.mean():.1f}" in floor
+    assert f"(n=4: square) differ by MPPE [mm] {apart.mean():.1f}" in floor
 
 
 def test_against_the_ideal_a_good_fold_is_near_but_not_perfect(tmp_path):
