@@ -140,7 +140,7 @@ class Prompt:
             raise ConfigError(f"prompt {self.path} can't be rendered: {error}; correct the template") from error
 
 
-def load_prompt(role: str, version: str = "", folders: Sequence[Path] = ()) -> Prompt:
+def load_prompt(role: str, version: str | None = None, folders: Sequence[Path] = ()) -> Prompt:
     """The prompt of a role and version.
 
     Args:

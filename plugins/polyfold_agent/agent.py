@@ -13,7 +13,16 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import PlanError
 from polyfold.geometry import Camera, FoldLine, contour_of
-from polyfold.plugins.interfaces import Goal, Grounding, Planner, Policy, Segmenter, StepwisePlanner, action_map_later
+from polyfold.plugins.interfaces import (
+    Conversation,
+    Goal,
+    Grounding,
+    Planner,
+    Policy,
+    Segmenter,
+    StepwisePlanner,
+    action_map_later,
+)
 from polyfold.types import Action, ActionMap, Decision, Observation, Scene, Subgoal
 from polyfold_agent.recovery import Attempt, inspect
 
@@ -99,29 +108,28 @@ class PolyFoldAgent:
             None if before is None else before.fold_line,
         )
         grounded = time.perf_counter()
-        plan = self._planner.plan(self._pending[0], scene, self._goal.conversation)
-        if isinstance(plan, Subgoal):
-            self._again(plan)
-            plan = self._planner.plan(plan, scene, self._goal.conversation)
+        subgoal, plan = self._next_plan(scene, self._goal.conversation)
         planned = time.perf_counter()
-        subgoal = self._pending[0]
         if plan is None or not _plans_step_by_step(self._planner):
             self._pending.pop(0)
         if plan is None:
             return None
-        if isinstance(plan, Subgoal):
-            raise PlanError(f"before “{subgoal.text}” can be folded again, “{plan.text}” should be; give up")
         action, line, action_map = self._act(plan, scene)
         self._attempt = Attempt(observation, mask, line, action)
         seconds = {"grounding": grounded - clock, "language": planned - grounded, "policy": _since(planned)}
         return Decision(action, subgoal, line, scene, seconds, action_map=action_map)
 
-    def _again(self, undone: Subgoal) -> None:
-        """Put a subgoal whose flap has come open before the others, once."""
-        if undone.text in self._reopened:
-            raise PlanError(f"“{undone.text}” came open again after it was folded twice; fold something else")
-        self._reopened.add(undone.text)
-        self._pending.insert(0, undone)
+    def _next_plan(self, scene: Scene, conversation: Conversation) -> tuple[Subgoal, FoldLine | Action | None]:
+        """The next subgoal and its plan; one whose flap has come open goes before it, once."""
+        subgoal = self._pending[0]
+        plan = self._planner.plan(subgoal, scene, conversation)
+        if not isinstance(plan, Subgoal):
+            return subgoal, plan
+        if plan.text in self._reopened:
+            raise PlanError(f"“{plan.text}” was folded twice and has come open again; leave it out, or fold it last")
+        self._reopened.add(plan.text)
+        self._pending.insert(0, plan)
+        return self._next_plan(scene, conversation)
 
     def _can_repeat(self) -> bool:
         return self._config.recover and self._last is not None and self._tries < self._config.retries

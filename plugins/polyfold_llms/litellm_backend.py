@@ -23,6 +23,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.errors import ConfigError, LLMAccessError
 from polyfold.types import Message, Reply
 from polyfold_llms import model_table
+from polyfold_llms.litellm_client import JSON_ANSWER, as_prompted, carried_format, load_litellm, with_cache_marks
 from polyfold_llms.redaction import contains_secret, redact, redacted
 from polyfold_llms.retries import (
     CallResult,
@@ -97,8 +98,6 @@ class LiteLLM:
             LLMAccessError: if a person must act first: key, credit, address, model's name, a model without vision.
             LLMError: if the request was refused, or no try brought an answer.
         """
-        from polyfold_llms.litellm_client import load_litellm
-
         load_litellm()  # before the clock starts
         self._check_pictures(messages)
         request = self._request(messages, params)
@@ -106,7 +105,8 @@ class LiteLLM:
         policy = RetryPolicy(config.tries, config.first_wait_s, config.longest_wait_s)
         semaphore = server_semaphore(self._api_base or self.model.partition("/")[0], config.concurrency)
         what = f"the model {self.model!r}" + (f" at {self._api_base}" if self._api_base else "")
-        return self._reply(call_with_retries(lambda: self._attempt(request), policy, what, semaphore))
+        answer = call_with_retries(lambda: self._attempt(request), policy, what, semaphore)
+        return self._reply(answer, request.get("response_format") is JSON_ANSWER)
 
     def _check_pictures(self, messages: Sequence[Message]) -> None:
         if not any(_has_picture(message) for message in messages):
@@ -126,8 +126,6 @@ class LiteLLM:
 
     def _request(self, messages: Sequence[Message], params: Mapping[str, Any]) -> dict[str, Any]:
         """What litellm is called with, the key aside."""
-        from polyfold_llms.litellm_client import carried_format, with_cache_marks
-
         wanted = model_table.accepted_params(self.model, {**params, **self._config.params})
         return {
             **carried_format(self.model, wanted),
@@ -140,8 +138,6 @@ class LiteLLM:
 
     def _attempt(self, request: Mapping[str, Any]) -> Any:
         """One try. Raises TransportError."""
-        from polyfold_llms.litellm_client import load_litellm
-
         litellm = load_litellm()
         try:
             # litellm writes into what it is given.
@@ -165,7 +161,7 @@ class LiteLLM:
             found["api_key"] = "none"
         return found
 
-    def _reply(self, answer: CallResult[Any]) -> Reply:
+    def _reply(self, answer: CallResult[Any], as_schema: bool) -> Reply:
         timing = {
             "latency_s": round(answer.latency_s, 4),
             "wall_s": round(answer.wall_s, 4),
@@ -175,14 +171,13 @@ class LiteLLM:
         response = answer.result
         if response is None:
             return Reply("", finish="refusal", refusal="the provider's content filter barred the request", **timing)
-        from polyfold_llms.litellm_client import as_asked
-
         choice = response.choices[0]
         usage = _usage(response)
         cost, source = model_table.call_cost(self.model, usage, getattr(response.usage, "cost", None))
         refusal = _refusal(choice)
+        said = choice.message.content or ""
         reply = {
-            "text": as_asked(choice.message.content or ""),
+            "text": as_prompted(said) if as_schema else said,
             "reasoning": getattr(choice.message, "reasoning_content", None),
             "finish": "refusal" if refusal else "length" if choice.finish_reason == "length" else "stop",
             "refusal": refusal,

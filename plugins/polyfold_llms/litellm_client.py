@@ -95,14 +95,14 @@ def carried_format(name: str, params: Mapping[str, Any]) -> dict[str, Any]:
     return dict(params)
 
 
-def as_asked(text: str) -> str:
+def as_prompted(text: str) -> str:
     """An answer in the form of :data:`JSON_ANSWER` as the prompts want it: reasoning, then a fenced object."""
     try:
         content = json.loads(text)
     except ValueError:
         return text
     if not isinstance(content, dict) or set(content) != {"reasoning", "answer"}:
-        return text
+        return text  # cut off, or another model than was asked for; the planner will say what is wrong
     return f"{content['reasoning']}\n\n```json\n{content['answer']}\n```"
 
 

@@ -21,13 +21,13 @@ class Stepwise:
     """Remembers which subgoals have been carried out, and tells the language model."""
 
     def __init__(self, config: DecompositionConfig) -> None:
-        self._decomposition = config
+        self._config = config
         self._done: list[str] = []
 
     def subgoals(self, instruction: str, template: Template, conversation: Conversation) -> list[Subgoal]:
         """Split an instruction. Raises RefusedError with the reason when it can't or must not be done."""
         self._done = []
-        return decompose(instruction, template, conversation, self._decomposition)
+        return decompose(instruction, template, conversation, self._config)
 
     def _asked(
         self,
@@ -55,8 +55,8 @@ class Stepwise:
 
         prompt = prompt_for(scene, prompt_role, version)
         values = prompt_inputs(scene, prompt, done=self._done, subgoal=subgoal.text)
-        attempts = self._decomposition.max_attempts or prompt.max_attempts
-        found = ask_until_valid(prompt, values, read_reply, conversation, self._decomposition.params, attempts)
+        attempts = self._config.max_attempts or prompt.max_attempts
+        found = ask_until_valid(prompt, values, read_reply, conversation, self._config.params, attempts)
         if isinstance(found, Subgoal):
             self._done = [text for text in self._done if text != found.text]
         else:

@@ -41,7 +41,7 @@ class Column:
             return share([None if value is None else value > 0 for value in values], *shared(records))
         found = mean(values, *shared(records))
         if not math.isfinite(found.high):
-            return found
+            return found  # an interval that says nothing is not made to look like one by a bound
         # A metric that is never negative, such as an error, has no negative mean.
         negative = any(value is not None and value < 0 for value in values)
         low = found.low if negative else max(found.low, 0.0)

@@ -78,13 +78,15 @@ def noise_floor(noise: Results) -> str:
 
 def _differ_in_order_alone(noise: Results) -> bool:
     """Whether the variants are the same but for the order in which the simulator has its particles."""
-    components = [noise.run.components.get(variant, {}) for variant in noise.study.variants]
-    plain = [
-        {field: {**spec.model_dump(), "params": {**spec.params, ORDER: None}} for field, spec in own.items()}
-        for own in components
-    ]
-    orders = [own["simulator"].params.get(ORDER) if "simulator" in own else None for own in components]
-    return all(other == plain[0] for other in plain) and len(set(orders)) == len(orders) > 1
+    orders, others = [], []
+    for variant in noise.study.variants:
+        components = dict(noise.run.components.get(variant, {}))
+        simulator = components.pop("simulator", None)
+        if simulator is None:
+            return False
+        orders.append(simulator.params.get(ORDER))
+        others.append((simulator.name, {**simulator.params, ORDER: None}, components))
+    return all(other == others[0] for other in others) and len(set(orders)) == len(orders) > 1
 
 
 def _place(record: StudyEpisodeRecord) -> tuple[str | None, str, int | None, int]:

@@ -17,7 +17,12 @@ if TYPE_CHECKING:
     from polyfold.types import Call, Episode, Message
 
 CHARACTERS_PER_TOKEN = 3.4
-"""The prompts in ``prompts/`` have 3.2 (fold_line) to 3.7 (subgoals) by the tokenizer of gpt-4o, on t-shirts."""
+"""The prompts in ``prompts/`` have 3.1 (fold_line) to 3.9 (subgoals) by the tokenizer of gpt-4o, on t-shirts."""
+
+PICTURE_TOKENS = 255
+"""What a picture counts: OpenAI's 85 and 170 a tile of 512 px at high detail; at low detail it counts 85."""
+
+_CHOOSE = "choose among them, or give another --instruction, --planner or --step"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -85,13 +90,6 @@ def _asked(arguments: argparse.Namespace, calls: Sequence[Call]) -> Call:
 def _with_failure(problem: str, episode: Episode) -> str:
     ended = f"; the episode ended early ({episode.failure.reason})" if episode.failure else ""
     return f"{problem}{ended}; give another --instruction, --agent or --planner"
-
-
-_CHOOSE = "choose among them, or give another --instruction, --planner or --step"
-
-
-PICTURE_TOKENS = 255
-"""What a picture counts: OpenAI's 85 and 170 a tile of 512 px at high detail; at low detail it counts 85."""
 
 
 def _tokens(messages: Sequence[Message], model: str | None) -> tuple[int, str]:

@@ -42,3 +42,20 @@ def test_roles_and_steps_that_were_not_asked_are_answered_with_those_that_were(p
 
 def test_prompts_are_listed(polyfold):
     assert {"subgoals@v2", "fold_line@v2"} <= set(polyfold("prompt", "list").out.split())
+
+
+def test_without_a_role_the_roles_are_listed(polyfold):
+    assert polyfold("prompt", "show", *COARSE).out.split() == ["subgoals", "fold_line"]
+    result = polyfold("prompt", "show", *COARSE, "--agent", "noop")
+    assert result.status == 1
+    assert "no language model is asked" in result.err
+
+
+def test_pictures_count_and_it_is_said_how(polyfold):
+    asked = ("prompt", "show", "fold_line", *COARSE, "--json")
+    words, both = (
+        json.loads(polyfold(*asked, "--grounding", grounding).out) for grounding in ("polygon", "polygon+image")
+    )
+    assert both["tokens"] > words["tokens"] + 255
+    assert "each picture taken as 255" in both["counted"]
+    assert "picture" not in words["counted"]

@@ -16,7 +16,7 @@ from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins import create, find
 from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import fold_lines, load_suite
-from polyfold.types import Scene, Subgoal
+from polyfold.types import Reply, Scene, Subgoal
 
 SUITE = load_suite(str(find("tasks", "polyfold70").target))
 SEED = 2005
@@ -178,3 +178,17 @@ def test_two_arms_hold_folded_cloth_where_the_ideal_fold_lifts_it(kind, task, fo
     assert wanted.lifts(action.picks).all()
     off = np.hypot(*(wanted.mirror(action.picks) - action.places).T)
     assert off.max() < 0.06 * np.ptp(laid.particles, axis=0).max()
+
+
+def test_a_question_that_comes_back_with_what_was_wrong_is_answered_again(rules):
+    class WrongAtFirst:
+        def __init__(self):
+            self.asked = 0
+
+        def complete(self, messages, params):
+            self.asked += 1
+            return Reply("no object") if self.asked == 1 else rules.complete(messages, params)
+
+    scene, llm = scene_of("rectangle"), WrongAtFirst()
+    assert plan("hierarchical", HALF, scene, llm)[0] == plan("hierarchical", HALF, scene, rules)[0]
+    assert llm.asked == 2

@@ -47,6 +47,14 @@ def test_the_oracle_leaves_the_best_of_what_it_tried(monkeypatch):
     assert any(np.array_equal(step.action.places, episode.steps[-1].action.places) for step in episode.steps[:-1])
 
 
+def test_no_task_has_so_many_tries_that_its_episode_is_stopped():
+    from polyfold_standard.agents.oracle import BUDGET
+
+    from polyfold.rollout._loop import MAX_STEPS
+
+    assert BUDGET <= MAX_STEPS
+
+
 def test_a_try_that_a_fault_spoils_is_made_again():
     """The best try is repeated until it lies there: under faults no two tries of the same picks are alike."""
     from polyfold_standard.agents.oracle import _Trial

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
 from polyfold.errors import PlanError
 from polyfold.geometry import FoldLine, signed_distance
+from polyfold.polygon import FoldedModel
 from polyfold.types import Scene
 
 MIN_LENGTH = 10.0
@@ -16,9 +18,17 @@ MIN_LENGTH = 10.0
 MIN_SHARE = 0.005
 """Each side of a fold line needs this share of the visible cloth."""
 
+MOVED = 1.5
+"""A vertex this far from where it lay on the flat garment [px] has been moved."""
+
 _PART = re.compile(r"fold (?:the |its )?(?P<part>.+?) (?:\w+ )?(?:on)?to ", re.IGNORECASE)
 _SIDE = re.compile(r"\b(left|right|top|bottom|upper|lower)\b")
 _SAME = {"upper": "top", "lower": "bottom"}
+_SEAMS = {("sleeve", "cuff"): "sleeve", ("hem",): "hem", ("waist",): "waist"}
+"""Words for parts, and how the names of their vertices begin."""
+
+_INNER = ("sleeve", "armpit", "shoulder", "neck", "crotch")
+"""Vertices that a fold of a side need not take along."""
 
 
 def check_fold_line(line: FoldLine, scene: Scene) -> None:
@@ -48,40 +58,35 @@ def check_fold_line(line: FoldLine, scene: Scene) -> None:
 
 
 def check_lifted(line: FoldLine, subgoal: str, scene: Scene) -> None:
-    """Compare the lifted side with the part that the subgoal names, as far as the flat garment's names tell.
+    """Compare the lifted side with the part that the subgoal names, as far as the vertices' names tell.
 
     Raises:
         PlanError: if all vertices of the part lie on the side that stays, in words for the model that wrote it.
     """
-    if scene.model is None:
-        return
     found = _PART.match(subgoal)
-    names = _vertices_of(found["part"].lower(), scene) if found else []
-    if not names:
+    if scene.model is None or found is None:
         return
     points = scene.model.points()
-    away = np.array([float(line.distance(points[name])) for name in names])
-    if (away < 0).all():
+    names = _bounding(found["part"].lower(), _unmoved(scene.model))
+    if names and all(line.distance(points[name]) < 0 for name in names):
         where = ", ".join(f"{name} ({points[name][0]:.0f}, {points[name][1]:.0f})" for name in names[:3])
         raise PlanError(
-            f"the subgoal moves the {found['part'] if found else 'part'}, but {where} lies to the right of the line, "
-            "on the side that stays; swap start and end, or find the line anew"
+            f"the subgoal moves the {found['part']}, but {where} lies to the right of the line, on the side that "
+            "stays; swap start and end, or find the line anew"
         )
 
 
-def _vertices_of(part: str, scene: Scene) -> list[str]:
-    """Vertices that surely move with a part: those of its name, where nothing has carried them elsewhere."""
-    assert scene.model is not None
+def _unmoved(model: FoldedModel) -> list[str]:
+    """Vertices that lie where they lay on the flat garment: what was carried elsewhere may bound another part now."""
+    points = model.points()
+    return [name for name, at in zip(model.names, model.rest, strict=True) if np.hypot(*(points[name] - at)) < MOVED]
+
+
+def _bounding(part: str, names: Sequence[str]) -> list[str]:
+    """Those of the vertices that surely go with a part: of its seam, or at all its sides; none where that is open."""
     sides = {_SAME.get(side, side) for side in _SIDE.findall(part)}
-    noun = next((noun for noun in ("sleeve", "cuff", "corner", "hem", "waist", "leg") if noun in part), "")
-    flat = dict(zip(scene.model.names, scene.model.rest, strict=True))
-    points = scene.model.points()
-    still = [name for name in flat if np.hypot(*(points[name] - flat[name])) < 1.5]
-    if noun in ("sleeve", "cuff"):
-        return [name for name in still if name.startswith("sleeve") and sides & set(name.split("_"))]
-    if noun in ("hem", "waist"):
-        return [name for name in still if name.startswith(noun) and (not sides or sides & set(name.split("_")))]
-    if not sides or "again" in part:
-        return []
-    whole = {"sleeve", "armpit", "shoulder", "neck", "crotch"}
-    return [name for name in still if sides <= set(name.split("_")) and not whole & set(name.split("_"))]
+    for words, stem in _SEAMS.items():
+        if any(word in part for word in words):
+            return [name for name in names if name.startswith(stem) and sides <= set(name.split("_"))]
+    inner = [name for name in names if not name.startswith(_INNER)]
+    return [name for name in inner if sides <= set(name.split("_"))] if sides else []

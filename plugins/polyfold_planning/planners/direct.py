@@ -28,8 +28,9 @@ class _Direct(Stepwise):
         motion_prompt: str = Field(default="v2", description="version of the prompt that asks for picks and places")
 
     def __init__(self, config: Config | None = None) -> None:
-        self._config = config or self.Config()
-        super().__init__(self._config)
+        config = config or self.Config()
+        super().__init__(config)
+        self._version = config.motion_prompt
 
     @classmethod
     def prompts_read(cls, config: Config) -> list[str]:
@@ -48,7 +49,7 @@ class _Direct(Stepwise):
             check_action(action, scene)
             return action
 
-        return self._asked(self.role, self._config.motion_prompt, subgoal, scene, conversation, read)
+        return self._asked(self.role, self._version, subgoal, scene, conversation, read)
 
 
 class DirectOneArm(_Direct):

@@ -26,8 +26,9 @@ class HierarchicalPlanner(Stepwise):
         fold_line_prompt: str = Field(default="v2", description="version of the prompt that finds fold lines")
 
     def __init__(self, config: Config | None = None) -> None:
-        self._config = config or self.Config()
-        super().__init__(self._config)
+        config = config or self.Config()
+        super().__init__(config)
+        self._version = config.fold_line_prompt
 
     @classmethod
     def prompts_read(cls, config: Config) -> list[str]:
@@ -47,4 +48,4 @@ class HierarchicalPlanner(Stepwise):
             check_lifted(line, subgoal.text, scene)
             return line
 
-        return self._asked("fold_line", self._config.fold_line_prompt, subgoal, scene, conversation, read)
+        return self._asked("fold_line", self._version, subgoal, scene, conversation, read)

@@ -34,7 +34,6 @@ class Shape:
         points: name -> where it lies now [px], shape (2,); corners of an outline are called ``point 1`` and so on.
         flat: name -> where it lay before the first fold [px], shape (2,).
         folds: how many folds the text shows.
-        pixels_per_cm: of the table; None if the text does not say.
     """
 
     kind: str
@@ -42,7 +41,6 @@ class Shape:
     points: Mapping[str, Point]
     flat: Mapping[str, Point] = field(default_factory=dict)
     folds: int = 0
-    pixels_per_cm: float | None = None
 
     @classmethod
     def from_text(cls, content: Mapping[str, Any]) -> Shape:
@@ -64,7 +62,7 @@ class Shape:
             )
         folds = max((int(found[1]) for name in points if (found := _CREASE.fullmatch(name))), default=int(nameless))
         named = {} if nameless else {name: point for name, point in points.items() if not _CREASE.fullmatch(name)}
-        return cls(str(content.get("garment", "")), size, points, named | before, folds, image.get("px_per_cm") or None)
+        return cls(str(content.get("garment", "")), size, points, named | before, folds)
 
     @property
     def nameless(self) -> bool:
