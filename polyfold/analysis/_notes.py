@@ -124,13 +124,17 @@ def _made_with(results: Results) -> str:
     return said[:1].upper() + said[1:]
 
 
+_OWN = (Experiment().llm.name, "rules")
+"""Solvers of this project; the second answered until 0.1."""
+
+
 def _answered(results: Results) -> str:
     names: dict[str, str] = {}
     for variant, components in results.run.components.items():
         spec = components.get("llm")
         if spec is not None and variant in results.study.variants:
             name = spec.name
-            names[variant] = f"{name} (offline, no language model)" if name == Experiment().llm.name else name
+            names[variant] = f"{name} (offline, no language model)" if name in _OWN else name
     if not names:
         return ""
     if len(set(names.values())) == 1:

@@ -46,11 +46,21 @@ FIRST_SEED = 2000
 
 @dataclass(frozen=True, eq=False)
 class Laid:
-    """A garment on the table: its unfolded model and its particles [px], shape (N, 2)."""
+    """A garment on the table.
+
+    Attributes:
+        model: its unfolded model.
+        particles: its particles [px], shape (N, 2).
+        size: (width, height) of the image [px].
+        extent: width and height of the garment when it lies upright [m].
+        pixels_per_metre: scale of the image.
+    """
 
     model: FoldedModel
     particles: NDArray[np.float64]
     size: tuple[int, int]
+    extent: tuple[float, float]
+    pixels_per_metre: float
 
 
 @dataclass(frozen=True)
@@ -75,20 +85,22 @@ def laid_garment(kind: str, seed: int) -> Laid:
     camera = Camera.framing(2 * float(np.hypot(*flat.T).max()) / 0.8)
     particles = camera.to_pixels(flat)
     vertices = [particles[garment.keypoints[name]] for name in template.names]
-    return Laid(template.model(vertices), particles, (camera.width, camera.height))
+    width, height = np.ptp(garment.mesh.vertices[:, :2], axis=0).tolist()
+    size = (camera.width, camera.height)
+    return Laid(template.model(vertices), particles, size, (width, height), camera.pixels_per_metre)
 
 
 def plan_ideally(text: str, laid: Laid, planner: Planner, llm: Any) -> list[FoldLine]:
     """The fold lines of an instruction, each planned on the ideal result of those before."""
     conversation = Transcript(llm)
-    template = create("garments", laid.model.kind).template()
+    template = create("garments", laid.model.kind).template().of_size(*laid.extent)
     model = laid.model
     lines = []
     for subgoal in planner.subgoals(text, template, conversation):
         width, height = laid.size
         outline = model.outline()
         mask = fill_polygon(outline, height, width)
-        scene = Scene(model.kind, laid.size, mask, outline, model, model.to_text(laid.size))
+        scene = Scene(model.kind, laid.size, mask, outline, model, model.to_text(laid.size, laid.pixels_per_metre))
         line = planner.plan(subgoal, scene, conversation)
         assert isinstance(line, FoldLine)
         model = model.fold(line)
@@ -214,7 +226,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     part.add_argument("--developed", action="store_true", help="only entries without held_out = true")
     parser.add_argument("--suite", default="polyfold70", help="task suite")
     parser.add_argument("--planner", default="hierarchical")
-    parser.add_argument("--llm", default="rules")
+    parser.add_argument("--llm", default="offline")
     parser.add_argument("--garments", type=int, default=1, help="garments per instruction; all must come out right")
     parser.add_argument("--brief", action="store_true", help="do not list the failures")
     options = parser.parse_args(arguments)

@@ -18,8 +18,8 @@ _SIDES = (
     r"acute) )*"
 )
 _GENERAL = re.compile(
-    rf"{_SIDES}(?:edges?|sides?|hal(?:f|ves)|thirds?|quarters?|corners?|parts?|portion|strip|flap|fold|crease|triangle)"
-    r"|(?:(?:one|two|three) )?(?:thirds?|quarters?|fifths?|sixths?|eighths?)|\d+(?:\.\d+)? cm"
+    rf"{_SIDES}(?:edges?|sides?|hal(?:f|ves)|corners?|parts?|portion|strip|flap|fold|crease|triangle)"
+    rf"|{_SIDES}(?:(?:one|two|three) )?(?:thirds?|quarters?|fifths?|sixths?|eighths?)|\d+(?:\.\d+)? cm"
     rf"|(?:(?:vertical|horizontal) )?(?:centre|center|middle|midpoint)(?: (?:line|point|axis))?|gap|rest|cloth|garment"
 )
 """Parts that every garment has, whatever its template names."""

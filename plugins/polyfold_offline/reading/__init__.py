@@ -1,0 +1,1 @@
+"""Reading: sentence to program, by a small network, with how sure it is."""

@@ -1,0 +1,149 @@
+"""Sentence to folds: the learned reader, how sure it is, and what it says where it is not."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from polyfold_offline.cloth.folds import CORNERS, EDGES, OPPOSITE_CORNER, PART_NAMES, Fold, say
+from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
+from polyfold_offline.meaning.folding import Folding, folds_of
+from polyfold_offline.meaning.program import Program
+from polyfold_offline.reading.decoding import Candidate, likeliest
+from polyfold_offline.reading.network import Network
+from polyfold_offline.reading.pieces import Pieces
+from polyfold_offline.reading.text import Read, take_lengths
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One way to understand a sentence.
+
+    Attributes:
+        program: what it asks for, in the words of the reader.
+        folding: the folds that this is on the garment; None where it is refused.
+        reason: why it is refused, or empty.
+        sure: how likely it is that these folds are meant, 0 to 1.
+    """
+
+    program: Program
+    folding: Folding | None
+    reason: str
+    sure: float
+
+
+class Reader:
+    """Reads sentences with a network."""
+
+    def __init__(self, folder: Path, sure: float) -> None:
+        """Args:
+        folder: holds ``reader.safetensors``, ``pieces.json`` and ``words.json``.
+        sure: readings that are less likely than this are refused.
+        """
+        self._network = Network.load(folder / "reader.safetensors")
+        self._pieces = Pieces.load(folder)
+        self._sure = sure
+
+    def folds(self, sentence: str, garment: Garment) -> Folding:
+        """The folds that a sentence asks for.
+
+        Raises:
+            NotUnderstoodError: with the reason, and the nearest thing that can be done where there is one.
+        """
+        if (fold := fold_of_subgoal(sentence, garment)) is not None:
+            return Folding(garment, [fold])
+        readings = self.readings(sentence, garment)
+        best = readings[0]
+        if best.sure >= self._sure:
+            if best.folding is None:
+                raise NotUnderstoodError(best.reason)
+            return best.folding
+        raise NotUnderstoodError(self._doubt(sentence, garment, readings))
+
+    def readings(self, sentence: str, garment: Garment) -> list[Reading]:
+        """The ways to understand a sentence, the likeliest first; those with the same folds are one."""
+        read = take_lengths(_in_known_words(sentence, garment))
+        candidates = likeliest(self._network, self._pieces.read(read.text, garment.family), garment.family)
+        return _together(candidates, read, garment)
+
+    def _doubt(self, sentence: str, garment: Garment, readings: Sequence[Reading]) -> str:
+        """Why a sentence is refused: the part of it that is in doubt, and what it might mean."""
+        part = self._doubtful_part(sentence, garment)
+        reason = f"I am not sure what “{part}” means" if part else "I am not sure what it means"
+        nearest = next((reading for reading in readings if reading.folding is not None), None)
+        if nearest is None or nearest.folding is None:
+            return reason
+        told = ", then ".join(say(fold, garment.kind) for fold in nearest.folding.folds)
+        return f"{reason}; did you mean: {told}?"
+
+    def _doubtful_part(self, sentence: str, garment: Garment) -> str:
+        """The clause without which the reader is surest of the rest; empty if the sentence has but one."""
+        clauses = [part for part in _CLAUSES.split(sentence) if part and part.strip()]
+        if not 1 < len(clauses) <= _MANY_CLAUSES:
+            return " ".join(sentence.split()[:_LONG]) if sentence.strip() else ""
+        doubts = [self.readings(clause, garment)[0].sure for clause in clauses]
+        return clauses[doubts.index(min(doubts))].strip()
+
+
+_CLAUSES = re.compile(r"[.;:!?\n]+|,\s+(?:and\s+)?(?:then\s+)?|\s+(?:and\s+)?then\s+")
+_MANY_CLAUSES = 8
+_LONG = 25
+
+
+def _together(candidates: Sequence[Candidate], read: Read, garment: Garment) -> list[Reading]:
+    """Readings from candidates; the probability of those with the same outcome is added up."""
+    found: dict[str, Reading] = {}
+    for candidate in candidates:
+        folding, reason = None, ""
+        try:
+            folding = folds_of(candidate.program, read.lengths, garment)
+        except NotUnderstoodError as error:
+            reason = str(error)
+        key = str(folding.folds) if folding else ""
+        before = found.get(key) or Reading(candidate.program, folding, reason, 0.0)
+        sure = before.sure + math.exp(candidate.score)
+        found[key] = Reading(before.program, before.folding, before.reason, min(1.0, sure))
+    return sorted(found.values(), key=lambda reading: -reading.sure)
+
+
+def _in_known_words(sentence: str, garment: Garment) -> str:
+    """The sentence with parts that only this garment's template names replaced by the edge that they lie on."""
+    if garment.family != "other":
+        return sentence
+    for part in sorted(garment.parts, key=len, reverse=True):
+        sentence = re.sub(rf"\b{re.escape(part)}\b", f"{garment.parts[part]} edge", sentence, flags=re.IGNORECASE)
+    return sentence
+
+
+# Subgoals in the form in which this backend says them ----------------------------------------------------------------
+
+
+def fold_of_subgoal(sentence: str, garment: Garment) -> Fold | None:
+    """The fold of a subgoal that is worded as :func:`polyfold_offline.cloth.folds.say` does; None of any other."""
+    words = " ".join(sentence.split()).rstrip(".")
+    if strip := _STRIP.fullmatch(words):
+        return Fold("band", strip["edge"], cm=float(strip["cm"]))
+    return next((fold for fold in _sayable(garment) if say(fold, garment.kind) == words), None)
+
+
+_STRIP = re.compile(r"fold the (?P<edge>left|right|top|bottom) strip of (?P<cm>\d+(?:\.\d+)?) cm \w+ward to the rest")
+
+
+def _sayable(garment: Garment) -> list[Fold]:
+    from fractions import Fraction
+
+    from polyfold_offline.meaning.program import FRACTIONS
+
+    folds = [Fold("half", edge, manner=manner) for edge in EDGES for manner in ("", "again", "gap")]
+    folds += [Fold("half", edge) for edge in ("long", "short")] + [Fold("middle", edge) for edge in EDGES]
+    shares = [Fraction(share) for share in FRACTIONS if Fraction(share).denominator in PART_NAMES]
+    folds += [Fold("band", edge, share=share) for edge in EDGES for share in shares]
+    if garment.plain:
+        folds += [Fold("corner", corner, "centre") for corner in CORNERS]
+        folds += [Fold("corner", corner, other) for corner, other in OPPOSITE_CORNER.items()]
+    if garment.family == "tshirt":
+        folds += [Fold("sleeve", side, manner=manner) for side in EDGES[:2] for manner in ("straight", "slanted")]
+    return folds

@@ -1,0 +1,1 @@
+"""Training of the reader: sentences with their meanings, varied, to weights."""

@@ -1,0 +1,165 @@
+"""Plain sentences for meanings drawn at random: what written ones name too seldom."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from random import Random
+from typing import Any
+
+from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
+from polyfold_offline.meaning.folding import folds_of
+from polyfold_offline.meaning.program import CORNERS, EDGES, LENGTHS, Piece, Program
+from polyfold_offline.reading.tokens import TOKENS, advance, begin, choices
+from polyfold_offline.training.corpus import Example
+
+_OPPOSITE = {"L": "R", "R": "L", "T": "B", "B": "T", "BL": "TR", "TR": "BL", "TL": "BR", "BR": "TL"}
+_FAMILIES = ("square", "rectangle", "tshirt", "pants", "other")
+
+
+def generate(count: int, seed: int) -> list[Example]:
+    """So many sentences, the same for a seed."""
+    phrases = tomllib.loads(Path(__file__).with_name("phrases.toml").read_text(encoding="utf-8"))
+    random = Random(seed)
+    found: list[Example] = []
+    while len(found) < count:
+        family = random.choice(_FAMILIES)
+        program = _program(family, random)
+        if program is not None:
+            text = _Speaker(family, phrases, random).say(program)
+            found.append(Example(family, text, program, "generated"))
+    return found
+
+
+def _program(family: str, random: Random) -> Program | None:
+    """A program that makes sense, with at most three steps."""
+    if family in ("square", "rectangle") and random.random() < _THREE_CORNERS:
+        left_out = random.choice(_CLOCKWISE)
+        return tuple(Piece("centre", place) for place in _CLOCKWISE if place != left_out)
+    state = begin(family)
+    while not state.ended:
+        token = random.choice([t for t in choices(state) if TOKENS[t] != "operation no"])
+        if not state.open and len(state.pieces) >= random.choice((1, 1, 2, 2, 3)):
+            ends = [t for t in choices(state) if TOKENS[t] == "operation end"]
+            token = (ends or [token])[0]
+        state = advance(state, token)
+    if _lengths(state.pieces) != list(LENGTHS[: len(_lengths(state.pieces))]):
+        return None
+    if any(p.operation in ("strip", "mid") and p.place == "any" for p in state.pieces):
+        return None
+    try:
+        folds_of(state.pieces, (20.0, 30.0, 10.0, 10.0), Garment(family, family, {}, (60.0, 60.0)))
+    except NotUnderstoodError:
+        return None if state.pieces[0].operation != "goal" else state.pieces
+    return state.pieces
+
+
+def _lengths(program: Program) -> list[str]:
+    return [word for piece in program for word in (piece.place, piece.detail) if word in LENGTHS]
+
+
+class _Speaker:
+    """Says programs in one way of naming sides."""
+
+    def __init__(self, family: str, phrases: Mapping[str, Any], random: Random) -> None:
+        self._phrases, self._random = phrases, random
+        system = random.choice(_SYSTEMS)
+        self._parts = dict(phrases["parts"].get(family, phrases["parts"]["plain"]))
+        self._sleeves = dict(phrases["sleeves"])
+        if system != "plain":
+            self._rename(family, system)
+
+    def _rename(self, family: str, system: str) -> None:
+        """Name sides by compass, clock or from where the speaker stands."""
+        named, sides = self._phrases[system], self._phrases["sides"][system]
+        if family in ("square", "rectangle", "other"):
+            self._parts |= named
+        for side, word in sides.items():
+            self._sleeves[side] = [f"{word} sleeve", f"sleeve at {word}", f"sleeve on the {word} side"]
+            if family == "pants":
+                self._parts[side] = [f"{word} leg", f"leg at {word}", f"leg on the {word} side"]
+            if family == "tshirt":
+                self._parts[side] = [f"{word} half", f"half at {word}", f"side at {word}"]
+
+    def say(self, program: Program) -> str:
+        """A sentence that asks for a program."""
+        random = self._random
+        if program[0].operation == "goal":
+            told = self._goal(program)
+        elif len(program) == 1 and random.random() < _TURNED:
+            told = self._turned(program[0])
+        elif len(program) == 2 and random.random() < _TURNED:
+            told = random.choice(self._phrases["turns"]["before"]).format(
+                a=self._step(program[0]), b=self._step(program[1], 1)
+            )
+        elif _three_corners(program):
+            left_out = next(place for place in _CLOCKWISE if place not in {p.place for p in program})
+            told = random.choice(self._phrases["turns"]["except"]).format(q=self._name(program[0], left_out))
+        else:
+            told = "".join(
+                (random.choice(self._phrases["joints"][:-1]) if number else "") + self._step(piece, number)
+                for number, piece in enumerate(program)
+            )
+        text = random.choice(self._phrases["openings"]) + told + random.choice(self._phrases["closings"])
+        return text[0].upper() + text[1:] if random.random() < 0.5 else text
+
+    def _turned(self, piece: Piece) -> str:
+        """One step, said with a correction, a negation or an exception."""
+        turns, other, random = self._phrases["turns"], _MIRRORED.get(piece.place), self._random
+        if other is None:
+            return self._step(piece)
+        wrong = Piece(piece.operation, other, piece.detail)
+        names = {
+            "p": self._name(piece, piece.place),
+            "r": self._name(piece, piece.place),
+            "q": self._name(piece, other),
+        }
+        ways = [*turns["wrong"], *turns["restart"]]
+        if piece.operation == "centre":
+            ways += turns["only"] * 3
+        if piece.operation == "sleeve" and piece.detail == "any":
+            ways += turns["others"] * 3
+        return random.choice(ways).format(a=self._step(piece), x=self._step(wrong), **names)
+
+    def _name(self, piece: Piece, place: str) -> str:
+        names = self._sleeves if piece.operation == "sleeve" else self._parts
+        return self._random.choice(names.get(place, ["part"]))
+
+    def _goal(self, program: Program) -> str:
+        goal, said = program[0], self._phrases["goal"]
+        told = self._random.choice(said[goal.detail if goal.place == "point" else goal.place])
+        if goal.place == "neat" and goal.detail != "-":
+            told += self._random.choice(said["in"]).format(n=goal.detail)
+        if len(program) > 1:
+            told += self._random.choice(said["fit"]).format(a=program[1].place, b=program[1].detail)
+        return told
+
+    def _step(self, piece: Piece, number: int = 0) -> str:
+        key = piece.operation
+        if piece.place not in (*EDGES, *CORNERS):
+            key += "-again" if key == "half" and piece.place == "any" and number else f"-{piece.place}"
+        said = self._random.choice(self._phrases["say"].get(key) or self._phrases["say"][piece.operation])
+        return said.format(
+            p=self._name(piece, piece.place),
+            o=self._random.choice(self._parts.get(_OPPOSITE.get(piece.place, ""), ["other side"])),
+            w=self._random.choice(self._phrases["widths"].get(piece.detail, [f"{piece.detail} cm"])),
+            m=self._random.choice(self._phrases["manners"].get(piece.detail, [""])),
+        )
+
+
+_THREE_CORNERS = 0.06
+_SYSTEMS = ("plain", "plain", "plain", "compass", "clock", "facing")
+_TURNED = 0.3
+"""Share of sentences that correct, deny or tell in another order."""
+
+_MIRRORED = {"L": "R", "R": "L", "T": "B", "B": "T", "BL": "BR", "BR": "TR", "TR": "TL", "TL": "BL"}
+
+
+_CLOCKWISE = ("BL", "TL", "TR", "BR")
+
+
+def _three_corners(program: Program) -> bool:
+    """Whether three corners go to the centre, in the order in which they are taken when none is said."""
+    places = [piece.place for piece in program if piece.operation == "centre"]
+    return len(program) == len(places) == 3 and places == [place for place in _CLOCKWISE if place in places]

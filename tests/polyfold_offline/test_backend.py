@@ -1,0 +1,165 @@
+"""The offline reader, seen from outside: messages in, subgoals, fold lines and refusals out."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from polyfold_offline import OfflineLLM
+from polyfold_offline.weights import FOLDER, checked_folder
+
+from experiments.benchmarks.language.understanding import (
+    accepted,
+    judge_set,
+    laid_garment,
+    part_of_set,
+    plan_ideally,
+    suite_set,
+)
+from polyfold.errors import ConfigError, RefusedError
+from polyfold.plugins import create, find
+from polyfold.prompts import load_prompt
+from polyfold.rollout._transcript import Transcript
+from polyfold.tasks import load_suite
+
+HERE = Path(__file__).parent
+SUITE = load_suite(str(find("tasks", "polyfold70").target))
+
+
+@pytest.fixture(scope="module")
+def planner():
+    return create("planners", "hierarchical")
+
+
+@pytest.fixture(scope="module")
+def llm():
+    return create("llms", "offline")
+
+
+def results(content, planner, llm):
+    outcomes = judge_set(content, SUITE, planner, llm)
+    meant = [outcome.result for outcome in outcomes if outcome.expected]
+    never = [outcome.result for outcome in outcomes if not outcome.expected]
+    return meant, never
+
+
+def test_the_suites_own_sentences_are_understood(planner, llm):
+    meant, _ = results(suite_set(SUITE), planner, llm)
+    assert meant.count("as intended") >= 0.93 * len(meant)
+    assert meant.count("other folds") <= 0.02 * len(meant)
+
+
+def test_sentences_of_other_hands_are_understood_and_seldom_mistaken(planner, llm):
+    """Sets of which no sentence was learned from; the bounds leave room for processors that round otherwise."""
+    told = tomllib.loads((HERE / "instructions.toml").read_text("utf-8"))
+    held_out = part_of_set(tomllib.loads((HERE / "sentences.toml").read_text("utf-8")), held_out=True)
+    for content in (told, held_out):
+        meant, never = results(content, planner, llm)
+        assert meant.count("as intended") >= 0.8 * len(meant)
+        assert meant.count("other folds") <= 0.05 * len(meant)
+        assert never.count("refused") >= 0.75 * len(never)
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "tasks"),
+    [
+        ("tshirt", "fold both sleeves straight in, then the hem up to the shoulders", ["tshirt-block-left-first"]),
+        ("square", "top left corner to the centre", ["square-corner-top_left"]),
+        ("pants", "Fold the left leg over the right leg.", ["pants-half-left"]),
+    ],
+)
+def test_plain_sentences_are_carried_out_however_the_garment_lies(planner, llm, kind, text, tasks):
+    laid = laid_garment(kind, 2003)
+    centre = (np.array(laid.size) - 1) / 2
+    for angle in (-100.0, 0.0, 40.0, 180.0):
+        model = laid.model.transformed(np.radians(angle), centre=centre)
+        turned = type(laid)(model, model.rest, laid.size, laid.extent, laid.pixels_per_metre)
+        assert accepted(turned, plan_ideally(text, turned, planner, llm), tasks, SUITE, unordered=False)
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        ("square", "fold the left sleeve"), ("tshirt", "fold the trousers in half"), ("tshirt", "iron the shirt"),
+        ("square", ""), ("square", "   "), ("pants", "what's the weather like?"),
+        ("rectangle", "wash it at sixty degrees"),
+    ],
+)  # fmt: skip
+def test_what_is_no_fold_of_this_garment_is_refused(planner, llm, kind, text):
+    with pytest.raises(RefusedError):
+        plan_ideally(text, laid_garment(kind, 2001), planner, llm)
+
+
+def test_doubt_is_said_with_the_part_in_doubt_and_what_can_be_done():
+    from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
+    from polyfold_offline.reading.reader import Reader
+
+    doubtful = Reader(FOLDER, sure=1.01)
+    with pytest.raises(NotUnderstoodError, match=r"not sure what “.+” means; did you mean: fold the left sleeve"):
+        doubtful.folds("fold the left sleeve in, then do it to the flumbet", Garment("tshirt", "tshirt"))
+
+
+def test_lengths_reach_the_fold_line(planner, llm):
+    laid = laid_garment("square", 2001)
+    (line,) = plan_ideally("turn up a strip of 5 cm along the bottom edge", laid, planner, llm)
+    lifted = line.distance(laid.model.rest).max()
+    assert lifted == pytest.approx(0.05 * laid.pixels_per_metre, abs=1.0)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.text(max_size=80))
+def test_no_text_breaks_the_reader(text):
+    planner, llm = create("planners", "hierarchical"), create("llms", "offline")
+    template = create("garments", "tshirt").template()
+    with contextlib.suppress(RefusedError):
+        assert planner.subgoals(text, template, Transcript(llm))
+
+
+def test_the_same_question_has_the_same_answer(llm):
+    prompt = load_prompt("subgoals")
+    template = json.loads(create("garments", "pants").template().to_text())
+    messages = prompt.render(template=template, instruction="tidy them into a block")
+    assert llm.complete(messages, {}).text == OfflineLLM().complete(messages, {}).text
+
+
+def test_reading_needs_no_torch():
+    script = (
+        "import sys; from polyfold.plugins import create; from polyfold.prompts import load_prompt; import json\n"
+        "template = json.loads(create('garments', 'square').template().to_text())\n"
+        "messages = load_prompt('subgoals').render(template=template, instruction='fold it in half')\n"
+        "assert 'subgoals' in create('llms', 'offline').complete(messages, {}).text\n"
+        "assert not {'torch', 'litellm', 'onnxruntime'} & set(sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_weights_are_small_and_checked(monkeypatch):
+    assert sum(path.stat().st_size for path in FOLDER.iterdir() if path.is_file()) < 30e6
+    monkeypatch.setattr("polyfold_offline.weights.SHA256", {"words.json": "0" * 64})
+    checked_folder.cache_clear()
+    with pytest.raises(ConfigError, match="not as published"):
+        checked_folder()
+    checked_folder.cache_clear()
+
+
+def test_anonymous_vertices_are_enough_for_halves_but_not_for_sleeves(llm):
+    corners = [(100, 100), (300, 100), (300, 300), (100, 300)]
+    model = {
+        "garment": "tshirt",
+        "image": {"width": 400, "height": 400},
+        "vertices": {f"p{i}": [x, y] for i, (x, y) in enumerate(corners)},
+    }
+    prompt = load_prompt("fold_line")
+    half = llm.complete(prompt.render(model=model, done=[], subgoal="fold the left side to the right side"), {})
+    assert '"fold_line"' in half.text
+    sleeve = llm.complete(prompt.render(model=model, done=[], subgoal="fold the left sleeve inward to the body"), {})
+    assert '"refused"' in sleeve.text
