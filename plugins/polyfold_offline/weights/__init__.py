@@ -11,9 +11,9 @@ from polyfold.errors import ConfigError
 FOLDER = Path(__file__).parent
 
 SHA256 = {
-    "reader.safetensors": "1f7840d383024a05a88df3efc8662a5d0860c1907d82b4570198f278b32c9ded",
+    "reader.safetensors": "6b6ee9982a906334c4b6f8c77a0d8d756aeb1bf12941383748100990fe61b2a0",
     "pieces.json": "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037",
-    "words.json": "20eb3111b1da3901579730080c968f8d256b166830ce017e6730436f431da2a0",
+    "words.json": "c42ed1317edf998dc1092af2c0ac8648bae76cfd4d3679a0b6c0fbbd6afe6b0f",
 }
 
 SURE = 0.6
