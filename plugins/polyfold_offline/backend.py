@@ -85,7 +85,7 @@ class OfflineLLM:
         model, told, reasoning = _flat_model(question, garment.kind), [], list(folding.notes)
         shape = Shape.from_text(question.cloth)
         for number, fold in enumerate(folding.folds):
-            crease = crease_of(fold, Shape.of_model(model, shape))
+            crease = crease_of(fold, Shape.of_model(model, shape.size, 100 * shape.px_per_cm or None))
             model = model.fold(crease.line)
             if number >= question.done:
                 subgoal = say(fold, garment.kind)

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 
 from polyfold.analysis._columns import Column, columns_of, shared
 from polyfold.analysis._results import Results
-from polyfold.config import Experiment
 from polyfold.errors import ConfigError
 from polyfold.logs import StudyEpisodeRecord
 
@@ -124,8 +123,8 @@ def _made_with(results: Results) -> str:
     return said[:1].upper() + said[1:]
 
 
-_OWN = (Experiment().llm.name, "rules")
-"""Solvers of this project; the second answered until 0.1."""
+_OWN = ("rules", "offline")
+"""Solvers of this project, which are no language models."""
 
 
 def _answered(results: Results) -> str:

@@ -51,21 +51,28 @@ def results(content, planner, llm):
     return meant, never
 
 
-def test_the_suites_own_sentences_are_understood(planner, llm):
-    meant, _ = results(suite_set(SUITE), planner, llm)
-    assert meant.count("as intended") >= 0.93 * len(meant)
-    assert meant.count("other folds") <= 0.02 * len(meant)
+SETS = HERE.parent / "polyfold_rules"
+"""Sets that were written for the grammar ``rules``; no sentence below was learned from."""
 
 
-def test_sentences_of_other_hands_are_understood_and_seldom_mistaken(planner, llm):
-    """Sets of which no sentence was learned from; the bounds leave room for processors that round otherwise."""
-    told = tomllib.loads((HERE / "instructions.toml").read_text("utf-8"))
-    held_out = part_of_set(tomllib.loads((HERE / "sentences.toml").read_text("utf-8")), held_out=True)
-    for content in (told, held_out):
-        meant, never = results(content, planner, llm)
-        assert meant.count("as intended") >= 0.8 * len(meant)
-        assert meant.count("other folds") <= 0.05 * len(meant)
-        assert never.count("refused") >= 0.75 * len(never)
+def read_set(name):
+    return tomllib.loads((SETS / f"{name}.toml").read_text("utf-8"))
+
+
+@pytest.mark.parametrize(
+    ("content", "right", "wrong", "refused"),
+    [
+        pytest.param(suite_set(SUITE), 0.94, 0.02, 0.0, id="suite"),
+        pytest.param(read_set("instructions"), 0.85, 0.04, 0.87, id="instructions"),
+        pytest.param(part_of_set(read_set("sentences"), held_out=True), 0.79, 0.05, 0.76, id="sentences"),
+    ],
+)
+def test_sentences_of_other_hands_are_understood_and_seldom_mistaken(content, right, wrong, refused, planner, llm):
+    """Bounds a little below what was measured, since processors round otherwise."""
+    meant, never = results(content, planner, llm)
+    assert meant.count("as intended") >= right * len(meant)
+    assert meant.count("other folds") <= wrong * len(meant)
+    assert never.count("refused") >= refused * len(never)
 
 
 @pytest.mark.parametrize(

@@ -65,6 +65,7 @@ def test_steps_become_folds(kind, code, folds):
         ("tshirt", "sleeve L any; sleeve L any", "same fold twice"),
         ("square", "centre BL; centre BL", "same fold twice"),
         ("square", "strip B 80cm", "80 cm is wider"),
+        ("square", "strip B 0cm", "no width"),
         ("square", "half L; half B; half L; half B; half L", "too thick"),
         ("tshirt", "goal neat fit 5x5", "5 x 5 cm"),
     ],

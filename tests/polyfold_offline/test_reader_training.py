@@ -13,7 +13,6 @@ from polyfold_offline.reading.network import Network
 from polyfold_offline.reading.pieces import Pieces
 from polyfold_offline.reading.tokens import INDEX, advance, begin, spell
 from polyfold_offline.training.batches import Batches, collate
-from polyfold_offline.training.command import TrainLanguage
 from polyfold_offline.training.corpus import Example, make_example, read_corpus
 from polyfold_offline.training.generator import generate
 from polyfold_offline.training.learning import Learner, Schedule, frequent_words, train
@@ -22,6 +21,7 @@ from polyfold_offline.training.variation import vary
 from polyfold_offline.training.weights import export
 from polyfold_offline.weights import FOLDER
 
+from polyfold.cli import main
 from polyfold.errors import ConfigError
 
 PLAN = Schedule(steps=4, size=2, every=1)
@@ -160,10 +160,11 @@ def test_words_of_folding_are_those_of_many_registers():
     assert frequent_words([e for e in said if e]) == {"fold": 8}
 
 
-def test_the_command_says_what_is_missing(tmp_path, cli):
+def test_the_command_says_what_is_missing(tmp_path, capsys):
     (tmp_path / "a.jsonl").write_text(json.dumps({"garment": "square", "meaning": "half L", "text": "over"}), "utf-8")
-    missing = tmp_path / "encoder.safetensors"
-    status, out = cli("train-language", tmp_path, "--out", tmp_path / "out", "--encoder", missing)
-    assert (status, "encoder.safetensors is missing" in out) == (1, True), out
-    assert TrainLanguage.run.__doc__
-    assert issubclass(ConfigError, Exception)
+    command = ["train-language", str(tmp_path), "--out", str(tmp_path / "out")]
+    assert main([*command, "--encoder", str(tmp_path / "encoder.safetensors")]) == 1
+    assert "encoder.safetensors is missing" in capsys.readouterr().err
+    assert main([*command, "--steps", "0"]) == 1
+    assert "--steps" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

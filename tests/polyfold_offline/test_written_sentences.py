@@ -12,7 +12,7 @@ import pytest
 from experiments.benchmarks.language.registers import SENTENCES, accepted_lines, read_sentences
 from polyfold.tasks import load_suite
 
-HERE = Path(__file__).parent
+SETS = Path(__file__).parents[1] / "polyfold_rules"
 REGISTERS = tomllib.loads((SENTENCES.parent / "registers.toml").read_text("utf-8"))["register"]
 USES = ("train", "dev", "final")
 
@@ -28,7 +28,7 @@ def measured_on() -> set[str]:
     ambiguous = tomllib.loads(files("polyfold_standard").joinpath("tasks/ambiguous.toml").read_text("utf-8"))
     found |= {goal["text"] for goal in ambiguous["goal"]}
     for name, only_held_out in (("instructions", False), ("sentences", True)):
-        content = tomllib.loads((HERE / f"{name}.toml").read_text("utf-8"))
+        content = tomllib.loads((SETS / f"{name}.toml").read_text("utf-8"))
         entries = [*content["instruction"], *content["refuse"]]
         found |= {entry["text"] for entry in entries if entry.get("held_out", False) or not only_held_out}
     return {plain(text) for text in found}

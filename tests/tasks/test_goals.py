@@ -249,7 +249,7 @@ name = "mine"
 [[goal]]
 id = "triangle"
 garment = "square"
-text = "Fold the top left corner onto the bottom right corner."
+text = "Fold it along the diagonal that runs from the bottom left to the top right corner, the top left corner moves."
 accept = ["square-corner-top_left", "square-triangle-top_left"]
 
 [[goal]]

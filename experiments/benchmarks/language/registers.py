@@ -111,7 +111,7 @@ def ways(kind: str, meaning: str) -> list[list[Fold]]:
     if program[0].operation == "goal":
         size = (lengths[0], lengths[1]) if len(lengths) == 2 else None
         tests = [test for _, test in demands(program[0], size, garment)]
-        return [list(o.folds) for o in outcomes(kind, kind) if all(test(o) for test in tests)]
+        return [list(o.folds) for o in outcomes(kind) if all(test(o) for test in tests)]
     settled = itertools.chain([program], itertools.product(*map(_settled, program)))
     return list(_done(settled, lengths, garment))
 
@@ -155,9 +155,8 @@ def lines_of(folds: Sequence[Fold], cloth: Laid) -> list[FoldLine] | None:
     """The lines of folds, each on the ideal result of those before; None where one can't be made."""
     model, found = cloth.model, []
     for fold in folds:
-        text = json.loads(model.to_text(cloth.size, cloth.pixels_per_metre))
         try:
-            line = crease_of(fold, Shape.from_text(text)).line
+            line = crease_of(fold, Shape.of_model(model, cloth.size, cloth.pixels_per_metre)).line
             model = model.fold(line)
         except (NotUnderstoodError, PolyfoldError):
             return None
@@ -181,10 +180,15 @@ def judge(sentence: Sentence, planner: Planner, llm: Any) -> Verdict:
     except (RefusedError, PlanError) as reason:
         detail = str(reason)
     spent = 1000 * (time.perf_counter() - began)
+    return Verdict(sentence, result_of(sentence, lines), detail or f"{len(lines or ())} folds", spent)
+
+
+def result_of(sentence: Sentence, lines: Sequence[FoldLine] | None) -> str:
+    """What became of a sentence that these lines were planned for; None if it was refused."""
     if lines is None:
-        return Verdict(sentence, RIGHT if sentence.impossible else REFUSED, detail, spent)
-    meant = any(agrees(cloth, lines, wanted) for wanted in accepted_lines(sentence.garment, sentence.meaning))
-    return Verdict(sentence, RIGHT if meant else SILENT, f"{len(lines)} folds", spent)
+        return RIGHT if sentence.impossible else REFUSED
+    accepted = accepted_lines(sentence.garment, sentence.meaning)
+    return RIGHT if any(agrees(laid(sentence.garment), lines, wanted) for wanted in accepted) else SILENT
 
 
 def table(verdicts: Sequence[Verdict]) -> str:
@@ -217,7 +221,8 @@ def curve(sentences: Sequence[Sentence], weights: Path | None) -> str:
     for sentence in tqdm(sentences, desc="curve"):
         garment = Garment(sentence.garment, sentence.garment, {}, SIZES[sentence.garment])
         best = reader.readings(sentence.text, garment)[0]
-        found.append((sentence, best.sure, _verdict_of(sentence, best.folding.folds if best.folding else None)))
+        lines = lines_of(best.folding.folds, laid(sentence.garment)) if best.folding else None
+        found.append((sentence, best.sure, result_of(sentence, lines)))
     meant = [entry for entry in found if not entry[0].impossible]
     never = [entry for entry in found if entry[0].impossible]
     rows = ["| sure | right | another fold | refused | impossible refused |", "|" + "---|" * 5]
@@ -232,15 +237,6 @@ def curve(sentences: Sequence[Sentence], weights: Path | None) -> str:
 
 
 THRESHOLDS = (0.0, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95)
-
-
-def _verdict_of(sentence: Sentence, folds: list[Fold] | None) -> str:
-    if folds is None:
-        return RIGHT if sentence.impossible else REFUSED
-    lines = lines_of(folds, laid(sentence.garment))
-    accepted = accepted_lines(sentence.garment, sentence.meaning)
-    meant = lines is not None and any(agrees(laid(sentence.garment), lines, wanted) for wanted in accepted)
-    return RIGHT if meant else SILENT
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

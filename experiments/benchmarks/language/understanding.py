@@ -52,15 +52,15 @@ class Laid:
         model: its unfolded model.
         particles: its particles [px], shape (N, 2).
         size: (width, height) of the image [px].
-        extent: width and height of the garment when it lies upright [m].
-        pixels_per_metre: scale of the image.
+        extent: width and height of the garment when it lies upright [m]; None to leave planners untold.
+        pixels_per_metre: scale of the image; None likewise.
     """
 
     model: FoldedModel
     particles: NDArray[np.float64]
     size: tuple[int, int]
-    extent: tuple[float, float]
-    pixels_per_metre: float
+    extent: tuple[float, float] | None = None
+    pixels_per_metre: float | None = None
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,8 @@ def laid_garment(kind: str, seed: int) -> Laid:
 def plan_ideally(text: str, laid: Laid, planner: Planner, llm: Any) -> list[FoldLine]:
     """The fold lines of an instruction, each planned on the ideal result of those before."""
     conversation = Transcript(llm)
-    template = create("garments", laid.model.kind).template().of_size(*laid.extent)
+    template = create("garments", laid.model.kind).template()
+    template = template.of_size(*laid.extent) if laid.extent else template
     model = laid.model
     lines = []
     for subgoal in planner.subgoals(text, template, conversation):
@@ -226,7 +227,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     part.add_argument("--developed", action="store_true", help="only entries without held_out = true")
     parser.add_argument("--suite", default="polyfold70", help="task suite")
     parser.add_argument("--planner", default="hierarchical")
-    parser.add_argument("--llm", default="offline")
+    parser.add_argument("--llm", default="rules")
     parser.add_argument("--garments", type=int, default=1, help="garments per instruction; all must come out right")
     parser.add_argument("--brief", action="store_true", help="do not list the failures")
     options = parser.parse_args(arguments)

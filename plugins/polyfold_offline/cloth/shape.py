@@ -67,9 +67,15 @@ class Shape:
         return cls(str(content.get("garment", "")), size, points, named | before, folds, px_per_cm)
 
     @classmethod
-    def of_model(cls, model: FoldedModel, like: Shape) -> Shape:
-        """The shape of a model, in an image of the same size and scale."""
-        return cls.from_text(json.loads(model.to_text(like.size, 100 * like.px_per_cm or None)))
+    def of_model(cls, model: FoldedModel, size: tuple[int, int], pixels_per_metre: float | None = None) -> Shape:
+        """The shape of a model in an image.
+
+        Args:
+            model: the cloth.
+            size: (width, height) of the image [px].
+            pixels_per_metre: its scale, if known.
+        """
+        return cls.from_text(json.loads(model.to_text(size, pixels_per_metre)))
 
     @property
     def nameless(self) -> bool:

@@ -32,9 +32,17 @@ REASONS = {
 
 @dataclass
 class Folding:
-    """Folds so far, and notes on what was left open."""
+    """Folds so far, and notes on what was left open.
+
+    Attributes:
+        garment: what lies on the table.
+        lengths: the lengths that the sentence names, in their order [cm].
+        folds: in their order.
+        notes: in words for the person.
+    """
 
     garment: Garment
+    lengths: Sequence[float] = ()
     folds: list[Fold] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -55,30 +63,30 @@ def folds_of(program: Program, lengths: Sequence[float], garment: Garment) -> Fo
     Raises:
         NotUnderstoodError: if it is a refusal, or can't be done on this garment.
     """
-    folding = Folding(garment)
+    folding = Folding(garment, lengths)
     first = program[0]
     if first.operation == "no":
         raise NotUnderstoodError(REASONS[first.place].format(garment=garment.spoken))
     if first.operation == "goal":
-        size = next((_size(piece, lengths) for piece in program if piece.operation == "fit"), None)
+        size = next((_size(piece, folding) for piece in program if piece.operation == "fit"), None)
         folding.folds += folds_for_goal(first, size, garment)
         folding.note(f"Nothing is said about the folds; of the ways that I know, {len(folding.folds)} come nearest.")
     else:
         for piece in program:
-            folding.folds.append(_STEPS[piece.operation](piece, lengths, folding))
+            folding.folds.append(_STEPS[piece.operation](piece, folding))
     _check(folding.folds)
     return folding
 
 
-def _size(piece: Piece, lengths: Sequence[float]) -> tuple[float, float]:
-    return _length(piece.place, lengths), _length(piece.detail, lengths)
+def _size(piece: Piece, folding: Folding) -> tuple[float, float]:
+    return _length(piece.place, folding), _length(piece.detail, folding)
 
 
-def _length(mark: str, lengths: Sequence[float]) -> float:
+def _length(mark: str, folding: Folding) -> float:
     number = int(mark[1:])
-    if number > len(lengths):
+    if number > len(folding.lengths):
         raise NotUnderstoodError("it is unclear which length is meant")
-    return lengths[number - 1]
+    return folding.lengths[number - 1]
 
 
 def _check(folds: list[Fold]) -> None:
@@ -98,7 +106,7 @@ def _check(folds: list[Fold]) -> None:
 # Steps ---------------------------------------------------------------------------------------------------------------
 
 
-def _half(piece: Piece, lengths: Sequence[float], folding: Folding) -> Fold:
+def _half(piece: Piece, folding: Folding) -> Fold:
     triangle = next((f for f in folding.folds if f.action == "corner" and f.target == OPPOSITE_CORNER[f.part]), None)
     if triangle is not None and piece.place in ("any", "side", "end"):
         return _halved_triangle(triangle, folding)
@@ -131,12 +139,12 @@ def _free_edge(folding: Folding) -> str:
             return edge
     bands = [fold.part for fold in folding.folds if fold.action == "band"]
     if folding.garment.family in ("tshirt", "pants"):
-        return "bottom" if any(_across(edge) for edge in (*halves, *bands)) or _sleeves(folding) else "left"
+        return "bottom" if any(_across(edge) for edge in (*halves, *bands)) or _sleeves_in(folding) else "left"
     last = (*bands, *halves)[-1:]
     return "left" if last and not _across(last[0]) else "bottom"
 
 
-def _sleeves(folding: Folding) -> int:
+def _sleeves_in(folding: Folding) -> bool:
     return sum(fold.action == "sleeve" for fold in folding.folds) == 2
 
 
@@ -150,15 +158,17 @@ def _halved_triangle(triangle: Fold, folding: Folding) -> Fold:
     return Fold("corner", corner, OPPOSITE_CORNER[corner])
 
 
-def _middle(piece: Piece, lengths: Sequence[float], folding: Folding) -> Fold:
+def _middle(piece: Piece, folding: Folding) -> Fold:
     return Fold("middle", _edge(piece, "middle", folding))
 
 
-def _strip(piece: Piece, lengths: Sequence[float], folding: Folding) -> Fold:
+def _strip(piece: Piece, folding: Folding) -> Fold:
     edge = _edge(piece, "band", folding)
     if not piece.detail.startswith("#"):
         return Fold("band", edge, share=Fraction(piece.detail))
-    width = _length(piece.detail, lengths)
+    width = _length(piece.detail, folding)
+    if width <= 0:
+        raise NotUnderstoodError("a strip of no width can't be turned over")
     size = folding.garment.size_cm
     if size is not None and width >= size[0 if _across(edge) else 1]:
         raise NotUnderstoodError(f"a strip of {width:g} cm is wider than the {folding.garment.spoken}")
@@ -176,11 +186,11 @@ def _edge(piece: Piece, action: str, folding: Folding) -> str:
     return next(edge for edge in (*EDGES, "left") if edge not in moved)
 
 
-def _centre(piece: Piece, lengths: Sequence[float], folding: Folding) -> Fold:
+def _centre(piece: Piece, folding: Folding) -> Fold:
     return Fold("corner", _corner(piece, folding), "centre")
 
 
-def _opposite(piece: Piece, lengths: Sequence[float], folding: Folding) -> Fold:
+def _opposite(piece: Piece, folding: Folding) -> Fold:
     corner = _corner(piece, folding)
     return Fold("corner", corner, OPPOSITE_CORNER[corner])
 
@@ -197,7 +207,7 @@ def _corner(piece: Piece, folding: Folding) -> str:
     return corner
 
 
-def _sleeve(piece: Piece, lengths: Sequence[float], folding: Folding) -> Fold:
+def _sleeve(piece: Piece, folding: Folding) -> Fold:
     before = [fold for fold in folding.folds if fold.action == "sleeve"]
     side = _EDGE.get(piece.place) or ("right" if before and before[-1].part == "left" else "left")
     if piece.place == "any" and not before:

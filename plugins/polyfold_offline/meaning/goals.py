@@ -16,6 +16,7 @@ SMALL = {"tshirt": 0.54, "pants": 0.25}
 """A pile for a drawer covers at most this share of the flat garment; the sleeves of t-shirts are thin."""
 
 PLAIN_SMALL = 0.42
+"""... of a plain cloth this share,"""
 
 FEW_SMALL = 0.6
 """... or this, if few folds are asked for."""
@@ -38,7 +39,7 @@ def folds_for_goal(goal: Piece, size_cm: tuple[float, float] | None, garment: Ga
     Raises:
         NotUnderstoodError: if no known sequence ends so; the message names the first thing that can't be had.
     """
-    found = list(outcomes(garment.kind, garment.family))
+    found = list(outcomes(garment.family))
     for words, content in demands(goal, size_cm, garment):
         remaining = [outcome for outcome in found if content(outcome)]
         if not remaining:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -55,9 +54,9 @@ class Outcome:
 
 
 @cache
-def outcomes(kind: str, family: str) -> tuple[Outcome, ...]:
-    """The ends of all known sequences, in their order."""
-    flat = _flat(kind, family)
+def outcomes(family: str) -> tuple[Outcome, ...]:
+    """The ends of all known sequences on a family of garments, in their order."""
+    flat = _flat(family)
     models: dict[tuple[Fold, ...], FoldedModel | None] = {(): flat}
     found = []
     for folds in sequences(family):
@@ -75,12 +74,12 @@ def _folded(model: FoldedModel | None, fold: Fold) -> FoldedModel | None:
     if model is None:
         return None
     try:
-        return model.fold(crease_of(fold, Shape.from_text(json.loads(model.to_text(SIZE, PX_PER_METRE)))).line)
+        return model.fold(crease_of(fold, Shape.of_model(model, SIZE, PX_PER_METRE)).line)
     except (NotUnderstoodError, PolyfoldError):
         return None
 
 
-def _flat(kind: str, family: str) -> FoldedModel:
+def _flat(family: str) -> FoldedModel:
     if family == "tshirt":
         points = {**_mirrored(_HALF_SHIRT), "neck_center": (0.0, -30.0)}
         order = ["hem", "armpit", "sleeve_bottom", "sleeve_top", "shoulder", "neck"]
@@ -90,12 +89,12 @@ def _flat(kind: str, family: str) -> FoldedModel:
         order = ["leg_inner", "leg_outer", "waist"]
         names = [f"{n}_left" for n in order] + [f"{n}_right" for n in reversed(order)] + ["crotch"]
     else:
-        width = 50.0 if kind == "square" else 35.0
+        width = 50.0 if family == "square" else 35.0
         points = {"bottom_left": (-width, 50), "top_left": (-width, -50), "top_right": (width, -50)}
         points["bottom_right"] = (width, 50)
         names = list(points)
     rest = np.array([points[name] for name in names], float) * 4 + 300
-    return FoldedModel(rest, tuple(names), dict.fromkeys(names, "vertex"), kind=kind)
+    return FoldedModel(rest, tuple(names), dict.fromkeys(names, "vertex"), kind=family)
 
 
 def _mirrored(half: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:

@@ -6,12 +6,13 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 
 from polyfold_offline.cloth.folds import CORNERS, EDGES, OPPOSITE_CORNER, PART_NAMES, Fold, say
 from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
 from polyfold_offline.meaning.folding import Folding, folds_of
-from polyfold_offline.meaning.program import Program
+from polyfold_offline.meaning.program import FRACTIONS, Program
 from polyfold_offline.reading.decoding import Candidate, likeliest
 from polyfold_offline.reading.network import Network
 from polyfold_offline.reading.pieces import Pieces
@@ -54,7 +55,7 @@ class Reader:
             NotUnderstoodError: with the reason, and the nearest thing that can be done where there is one.
         """
         if (fold := fold_of_subgoal(sentence, garment)) is not None:
-            return Folding(garment, [fold])
+            return Folding(garment, folds=[fold])
         readings = self.readings(sentence, garment)
         best = readings[0]
         if best.sure >= self._sure:
@@ -133,10 +134,6 @@ _STRIP = re.compile(r"fold the (?P<edge>left|right|top|bottom) strip of (?P<cm>\
 
 
 def _sayable(garment: Garment) -> list[Fold]:
-    from fractions import Fraction
-
-    from polyfold_offline.meaning.program import FRACTIONS
-
     folds = [Fold("half", edge, manner=manner) for edge in EDGES for manner in ("", "again", "gap")]
     folds += [Fold("half", edge) for edge in ("long", "short")] + [Fold("middle", edge) for edge in EDGES]
     shares = [Fraction(share) for share in FRACTIONS if Fraction(share).denominator in PART_NAMES]

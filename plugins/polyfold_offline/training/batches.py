@@ -62,6 +62,7 @@ MADE_SHARE = 0.15
 """Share of sentences that come from the generator."""
 
 _MASK, _FIRST_WORD = 103, 999
+"""Pieces of MiniLM's vocabulary: what hides another, and the last before the first that is text."""
 
 
 def _hidden(ids: list[int], random: Random) -> list[int]:

@@ -28,8 +28,11 @@ class TrainLanguage:
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Train what is missing and say where the weights are."""
+        from polyfold.errors import ConfigError
         from polyfold_offline.training.learning import Schedule, train_reader
 
+        if arguments.steps < 1:
+            raise ConfigError(f"--steps is {arguments.steps}; give a whole number from 1 on")
         plan = Schedule(steps=arguments.steps, seed=arguments.seed)
         try:
             weights = train_reader(arguments.sentences, arguments.out, arguments.encoder, plan)

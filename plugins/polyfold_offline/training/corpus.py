@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from polyfold.errors import ConfigError
-from polyfold_offline.meaning.program import Program, parse_program
+from polyfold_offline.meaning.program import Piece, Program, parse_program
 from polyfold_offline.reading.text import take_lengths
 
 
@@ -67,7 +67,4 @@ def make_example(family: str, text: str, meaning: str, register: str) -> Example
 
 def rename(program: Program, words: dict[str, str]) -> Program:
     """The program with places and details replaced."""
-    return tuple(
-        type(piece)(piece.operation, words.get(piece.place, piece.place), words.get(piece.detail, piece.detail))
-        for piece in program
-    )
+    return tuple(Piece(p.operation, words.get(p.place, p.place), words.get(p.detail, p.detail)) for p in program)

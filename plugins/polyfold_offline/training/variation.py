@@ -69,46 +69,28 @@ def _replaced(text: str, words: Mapping[str, str]) -> str:
     return pattern.sub(other, text)
 
 
+_MIRRORED = {"L": "R", "R": "L", "BL": "BR", "BR": "BL", "TL": "TR", "TR": "TL"}
+_MIRRORED |= {"point-L": "point-R", "point-R": "point-L"}
+_FLIPPED = {"T": "B", "B": "T", "BL": "TL", "TL": "BL", "BR": "TR", "TR": "BR"}
+_FLIPPED |= {"point-T": "point-B", "point-B": "point-T"}
+
+
 def _mirror(example: Example, others: Mapping[str, Sequence[Example]], random: Random) -> Example:
     if _NO_MIRROR.search(example.text):
         return example
-    swapped = _replaced(example.text, _SIDES)
-    places = {
-        "L": "R",
-        "R": "L",
-        "BL": "BR",
-        "BR": "BL",
-        "TL": "TR",
-        "TR": "TL",
-        "point-L": "point-R",
-        "point-R": "point-L",
-    }
-    return Example(example.family, swapped, _placed(example.program, places), example.register)
+    return _seen_otherwise(example, _SIDES, _MIRRORED)
 
 
 def _flip(example: Example, others: Mapping[str, Sequence[Example]], random: Random) -> Example:
-    if (
-        example.family not in ("square", "rectangle")
-        or _NO_MIRROR.search(example.text)
-        or _NO_FLIP.search(example.text)
-    ):
+    plain = example.family in ("square", "rectangle")
+    if not plain or _NO_MIRROR.search(example.text) or _NO_FLIP.search(example.text):
         return example
-    swapped = _replaced(example.text, _ENDS)
-    places = {
-        "T": "B",
-        "B": "T",
-        "BL": "TL",
-        "TL": "BL",
-        "BR": "TR",
-        "TR": "BR",
-        "point-T": "point-B",
-        "point-B": "point-T",
-    }
-    return Example(example.family, swapped, _placed(example.program, places), example.register)
+    return _seen_otherwise(example, _ENDS, _FLIPPED)
 
 
-def _placed(program: Program, places: dict[str, str]) -> Program:
-    return tuple(Piece(p.operation, places.get(p.place, p.place), places.get(p.detail, p.detail)) for p in program)
+def _seen_otherwise(example: Example, words: Mapping[str, str], places: dict[str, str]) -> Example:
+    text, program = _replaced(example.text, words), rename(example.program, places)
+    return Example(example.family, text, program, example.register)
 
 
 # Sentences put together ----------------------------------------------------------------------------------------------
@@ -142,7 +124,7 @@ def _is_steps(example: Example) -> bool:
     return example.program[0].operation not in ("no", "goal")
 
 
-def _another(example: Example, others: Mapping[str, Sequence[Example]], random: Random) -> Example | None:
+def _another(example: Example, others: Mapping[str, Sequence[Example]], random: Random) -> Example:
     """Another sentence about this kind of garment, of the same register if there is one."""
     for _ in range(8):
         other = random.choice(others[example.family])
@@ -153,7 +135,7 @@ def _another(example: Example, others: Mapping[str, Sequence[Example]], random: 
 
 def _continued(example: Example, others: Mapping[str, Sequence[Example]], random: Random) -> Example:
     other = _another(example, others, random)
-    if other is None or not (_is_steps(example) and _is_steps(other)):
+    if not (_is_steps(example) and _is_steps(other)):
         return example
     program = example.program + _after(other, example)
     if len(program) > _MAX_STEPS or not _makes_sense(program, example.family):
@@ -166,7 +148,7 @@ def _continued(example: Example, others: Mapping[str, Sequence[Example]], random
 
 def _corrected(example: Example, others: Mapping[str, Sequence[Example]], random: Random) -> Example:
     wrong = _another(example, others, random)
-    if wrong is None or not (_is_steps(example) and _is_steps(wrong)) or len(wrong.program) > 2:
+    if not (_is_steps(example) and _is_steps(wrong)) or len(wrong.program) > 2:
         return example
     text = f"{wrong.text.rstrip(' .!')}{random.choice(_CORRECTED)}{_shifted(example.text, wrong)}"
     return Example(example.family, text, _after(example, wrong), example.register)

@@ -1,4 +1,4 @@
-"""The offline model with less than a polygon: keypoints, pictures, and picks instead of fold lines."""
+"""Our solvers with less than a polygon: keypoints, pictures, and picks instead of fold lines."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ SEEN = SimpleNamespace(camera=Camera())
 PICTURE = np.full((400, 400, 3), 90, np.uint8)
 
 
-@pytest.fixture(scope="module")
-def offline():
-    return create("llms", "offline")
+@pytest.fixture(scope="module", params=["rules", "offline"])
+def solver(request):
+    return create("llms", request.param)
 
 
 def mask_of(model, size):
@@ -52,8 +52,8 @@ def scene_of(kind, task=None, folds=0, words="keypoints", **more) -> Scene:
     return replace(scene, **more)
 
 
-def plan(planner, text, scene, offline):
-    conversation = Transcript(offline)
+def plan(planner, text, scene, solver):
+    conversation = Transcript(solver)
     found = create("planners", planner).plan(Subgoal(text), scene, conversation)
     return found, conversation.calls[-1].reply.text
 
@@ -72,14 +72,14 @@ def plan(planner, text, scene, offline):
         "pants-block-right-thirds",
     ],
 )
-def test_named_and_then_nameless_keypoints_are_enough_on_ideal_folds(name, offline):
+def test_named_and_then_nameless_keypoints_are_enough_on_ideal_folds(name, solver):
     task = SUITE.task(name)
     laid = laid_garment(task.garment, SEED)
     template, planner = create("garments", task.garment).template(), create("planners", "hierarchical")
     grounding, model, scene, lines = create("groundings", "keypoints"), laid.model, None, []
-    for subgoal in planner.subgoals(task.instructions[0], template, Transcript(offline)):
+    for subgoal in planner.subgoals(task.instructions[0], template, Transcript(solver)):
         scene = grounding.ground(SEEN, mask_of(model, laid.size), template, scene, lines[-1] if lines else None)
-        lines.append(planner.plan(subgoal, scene, Transcript(offline)))
+        lines.append(planner.plan(subgoal, scene, Transcript(solver)))
         model = model.fold(lines[-1])
     wanted = fold_lines(task, dict(zip(laid.model.names, laid.model.rest, strict=True)))
     ours, theirs = folded_states(laid.particles, lines)[-1], folded_states(laid.particles, wanted)[-1]
@@ -87,12 +87,12 @@ def test_named_and_then_nameless_keypoints_are_enough_on_ideal_folds(name, offli
     assert np.hypot(*(ours - theirs)[moved].T).mean() < 0.05 * np.ptp(laid.particles, axis=0).max()
 
 
-def test_the_middle_line_is_that_of_the_flat_cloth_though_only_the_outline_is_seen(offline):
+def test_the_middle_line_is_that_of_the_flat_cloth_though_only_the_outline_is_seen(solver):
     line, _ = plan(
         "hierarchical",
         "fold the right edge inward to the middle line",
         scene_of("rectangle", "rectangle-middle-left-right", 1),
-        offline,
+        solver,
     )
     flat = laid_garment("rectangle", SEED).model
     corners = dict(zip(flat.names, flat.rest, strict=True))
@@ -101,10 +101,10 @@ def test_the_middle_line_is_that_of_the_flat_cloth_though_only_the_outline_is_se
         assert np.hypot(*(line.mirror(corners[name]) - middle)) < 8
 
 
-def test_words_without_vertices_are_refused_with_what_is_missing(offline):
+def test_words_without_vertices_are_refused_with_what_is_missing(solver):
     text = json.dumps({"garment": "square", "image": {"width": 400, "height": 400}, "corners": [[1, 2]]})
     with pytest.raises(RefusedError, match=r"lacks vertices and keypoints \(it has garment, image, corners"):
-        plan("hierarchical", "fold the left edge to the right edge", scene_of("square", text=text), offline)
+        plan("hierarchical", "fold the left edge to the right edge", scene_of("square", text=text), solver)
 
 
 @pytest.mark.parametrize(
@@ -114,38 +114,38 @@ def test_words_without_vertices_are_refused_with_what_is_missing(offline):
         ("square", "square-corners-all", "fold the bottom left corner inward to the centre"),
     ],
 )
-def test_a_part_that_the_outline_does_not_show_is_refused(kind, task, text, offline):
+def test_a_part_that_the_outline_does_not_show_is_refused(kind, task, text, solver):
     with pytest.raises(RefusedError, match="folded in already"):
-        plan("hierarchical", text, scene_of(kind, task, 1), offline)
+        plan("hierarchical", text, scene_of(kind, task, 1), solver)
 
 
-def test_a_picture_alone_is_refused_with_what_to_do(offline):
+def test_a_picture_alone_is_refused_with_what_to_do(solver):
     text = json.dumps({"garment": "square", "image": {"width": 400, "height": 400}})
     scene = scene_of("square", text=text, picture=PICTURE, shown=("image",))
     for planner in ("hierarchical", "zero-shot-vlm"):
         with pytest.raises(RefusedError, match="vision model"):
-            plan(planner, "fold the left edge to the right edge", scene, offline)
+            plan(planner, "fold the left edge to the right edge", scene, solver)
 
 
 @pytest.mark.parametrize("words", ["keypoints", "polygon"])
-def test_words_beside_a_picture_are_answered_as_without_it(words, offline):
+def test_words_beside_a_picture_are_answered_as_without_it(words, solver):
     text = "fold the left edge rightward to the right edge along the vertical centre line"
     plain = scene_of("rectangle", words=words)
     both = replace(plain, picture=PICTURE, shown=(words, "image"))
-    assert plan("hierarchical", text, plain, offline) == plan("hierarchical", text, both, offline)
+    assert plan("hierarchical", text, plain, solver) == plan("hierarchical", text, both, solver)
 
 
 HALF = "fold the left edge rightward to the right edge along the vertical centre line"
 
 
 @pytest.mark.parametrize("words", ["keypoints", "polygon"])
-def test_one_arm_takes_the_middle_of_an_edge_and_two_its_corners(words, offline):
+def test_one_arm_takes_the_middle_of_an_edge_and_two_its_corners(words, solver):
     corners = dict(
         zip(laid_garment("rectangle", SEED).model.names, laid_garment("rectangle", SEED).model.rest, strict=True)
     )
     height = np.hypot(*(corners["top_left"] - corners["bottom_left"]))
-    one, _ = plan("direct-1arm", HALF, scene_of("rectangle", words=words), offline)
-    two, _ = plan("direct-2arm", HALF, scene_of("rectangle", words=words), offline)
+    one, _ = plan("direct-1arm", HALF, scene_of("rectangle", words=words), solver)
+    two, _ = plan("direct-2arm", HALF, scene_of("rectangle", words=words), solver)
     assert (one.arms, two.arms) == (1, 2)
     assert np.hypot(*(one.picks[0] - (corners["top_left"] + corners["bottom_left"]) / 2)) < 8
     assert np.hypot(*(one.places[0] - (corners["top_right"] + corners["bottom_right"]) / 2)) < 8
@@ -170,25 +170,25 @@ def test_one_arm_takes_the_middle_of_an_edge_and_two_its_corners(words, offline)
     ],
 )
 @pytest.mark.parametrize("words", ["keypoints", "polygon"])
-def test_two_arms_hold_folded_cloth_where_the_ideal_fold_lifts_it(kind, task, folds, text, arms, words, offline):
+def test_two_arms_hold_folded_cloth_where_the_ideal_fold_lifts_it(kind, task, folds, text, arms, words, solver):
     laid = laid_garment(kind, SEED)
     wanted = fold_lines(SUITE.task(task), dict(zip(laid.model.names, laid.model.rest, strict=True)))[folds]
-    action, _ = plan("direct-2arm", text, scene_of(kind, task, folds, words), offline)
+    action, _ = plan("direct-2arm", text, scene_of(kind, task, folds, words), solver)
     assert action.arms == arms
     assert wanted.lifts(action.picks).all()
     off = np.hypot(*(wanted.mirror(action.picks) - action.places).T)
     assert off.max() < 0.06 * np.ptp(laid.particles, axis=0).max()
 
 
-def test_a_question_that_comes_back_with_what_was_wrong_is_answered_again(offline):
+def test_a_question_that_comes_back_with_what_was_wrong_is_answered_again(solver):
     class WrongAtFirst:
         def __init__(self):
             self.asked = 0
 
         def complete(self, messages, params):
             self.asked += 1
-            return Reply("no object") if self.asked == 1 else offline.complete(messages, params)
+            return Reply("no object") if self.asked == 1 else solver.complete(messages, params)
 
     scene, llm = scene_of("rectangle"), WrongAtFirst()
-    assert plan("hierarchical", HALF, scene, llm)[0] == plan("hierarchical", HALF, scene, offline)[0]
+    assert plan("hierarchical", HALF, scene, llm)[0] == plan("hierarchical", HALF, scene, solver)[0]
     assert llm.asked == 2

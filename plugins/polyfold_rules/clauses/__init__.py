@@ -1,0 +1,1 @@
+"""Clauses: the folds that each frame asks for, given those before it."""
