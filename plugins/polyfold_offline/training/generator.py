@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -12,9 +12,9 @@ from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
 from polyfold_offline.meaning.folding import folds_of
 from polyfold_offline.meaning.program import CORNERS, EDGES, LENGTHS, Piece, Program
 from polyfold_offline.reading.tokens import TOKENS, advance, begin, choices
+from polyfold_offline.training.asides import OPPOSITE
 from polyfold_offline.training.corpus import Example
 
-_OPPOSITE = {"L": "R", "R": "L", "T": "B", "B": "T", "BL": "TR", "TR": "BL", "TL": "BR", "BR": "TL"}
 _FAMILIES = ("square", "rectangle", "tshirt", "pants", "other")
 
 
@@ -37,6 +37,9 @@ def _program(family: str, random: Random) -> Program | None:
     if family in ("square", "rectangle") and random.random() < _THREE_CORNERS:
         left_out = random.choice(_CLOCKWISE)
         return tuple(Piece("centre", place) for place in _CLOCKWISE if place != left_out)
+    if family in _LISTS and random.random() < _LISTED:
+        operation, places, detail = random.choice(_LISTS[family])
+        return tuple(Piece(operation, place, detail) for place in _some_of(places, random))
     state = begin(family)
     while not state.ended:
         token = random.choice([t for t in choices(state) if TOKENS[t] != "operation no"])
@@ -96,6 +99,8 @@ class _Speaker:
         elif _three_corners(program):
             left_out = next(place for place in _CLOCKWISE if place not in {p.place for p in program})
             told = random.choice(self._phrases["turns"]["except"]).format(q=self._name(program[0], left_out))
+        elif _is_list(program) and random.random() < _TOLD_AS_LIST:
+            told = self._list(program)
         else:
             told = "".join(
                 (random.choice(self._phrases["joints"][:-1]) if number else "") + self._step(piece, number)
@@ -103,6 +108,26 @@ class _Speaker:
             )
         text = random.choice(self._phrases["openings"]) + told + random.choice(self._phrases["closings"])
         return text[0].upper() + text[1:] if random.random() < 0.5 else text
+
+    def _list(self, program: Program) -> str:
+        """Several parts with one movement, in the order in which they are named, or numbered."""
+        lists, random = self._phrases["lists"], self._random
+        named = [f"the {self._name(piece, piece.place)}" for piece in program]
+        kind = program[0].operation
+        move = random.choice(lists["moves"].get(kind) or self._phrases["manners"][program[0].detail])
+        if random.random() < _NUMBERED:
+            numbers = [*lists["numbers"][: len(named) - 1], random.choice(("last", lists["numbers"][len(named) - 1]))]
+            pairs = [
+                random.choice((f"{number} {name}", f"{name} {number}"))
+                for number, name in zip(numbers, named, strict=True)
+            ]
+            if random.random() < _SHUFFLED:
+                random.shuffle(pairs)
+            told = ", ".join(pairs)
+        else:
+            joint = random.choice(lists["joints"])
+            told = joint.join(named[:-1]) + random.choice((joint, *lists["last"])) + named[-1]
+        return random.choice(lists["said"]).format(list=told, move=move)
 
     def _turned(self, piece: Piece) -> str:
         """One step, said with a correction, a negation or an exception."""
@@ -142,13 +167,13 @@ class _Speaker:
         said = self._random.choice(self._phrases["say"].get(key) or self._phrases["say"][piece.operation])
         return said.format(
             p=self._name(piece, piece.place),
-            o=self._random.choice(self._parts.get(_OPPOSITE.get(piece.place, ""), ["other side"])),
+            o=self._random.choice(self._parts.get(OPPOSITE.get(piece.place, ""), ["other side"])),
             w=self._random.choice(self._phrases["widths"].get(piece.detail, [f"{piece.detail} cm"])),
             m=self._random.choice(self._phrases["manners"].get(piece.detail, [""])),
         )
 
 
-_THREE_CORNERS = 0.06
+_THREE_CORNERS, _LISTED, _TOLD_AS_LIST, _NUMBERED, _SHUFFLED = 0.04, 0.1, 0.75, 0.35, 0.3
 _SYSTEMS = ("plain", "plain", "plain", "compass", "clock", "facing")
 _TURNED = 0.3
 """Share of sentences that correct, deny or tell in another order."""
@@ -157,6 +182,23 @@ _MIRRORED = {"L": "R", "R": "L", "T": "B", "B": "T", "BL": "BR", "BR": "TR", "TR
 
 
 _CLOCKWISE = ("BL", "TL", "TR", "BR")
+_CORNER_LISTS = [
+    ("centre", _CLOCKWISE, "-"),
+    ("centre", _CLOCKWISE, "-"),
+    ("mid", ("L", "R"), "-"),
+    ("mid", ("T", "B"), "-"),
+]
+_SLEEVES = [("sleeve", ("L", "R"), manner) for manner in ("straight", "slanted", "any")]
+_LISTS = {"square": _CORNER_LISTS, "rectangle": _CORNER_LISTS, "tshirt": [*_SLEEVES, ("mid", ("L", "R"), "-")]}
+
+
+def _some_of(places: Sequence[str], random: Random) -> list[str]:
+    return random.sample(places, random.randint(2, len(places)))
+
+
+def _is_list(program: Program) -> bool:
+    same = {(piece.operation, piece.detail) for piece in program}
+    return len(program) > 1 and len(same) == 1 and program[0].operation in ("centre", "mid", "sleeve")
 
 
 def _three_corners(program: Program) -> bool:

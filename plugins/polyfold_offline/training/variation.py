@@ -10,6 +10,7 @@ from random import Random
 from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
 from polyfold_offline.meaning.folding import folds_of
 from polyfold_offline.meaning.program import LENGTHS, Piece, Program
+from polyfold_offline.training.asides import with_aside
 from polyfold_offline.training.corpus import Example, rename
 
 _MAX_STEPS = 5
@@ -209,6 +210,10 @@ def _beside_the_point(example: Example, others: Mapping[str, Sequence[Example]],
     return Example(example.family, text, example.program, example.register)
 
 
+def _added(example: Example, others: Mapping[str, Sequence[Example]], random: Random) -> Example:
+    return with_aside(example, random)
+
+
 # Words that don't matter ----------------------------------------------------------------------------------------------
 
 _MATTERS = frozenset(Path(__file__).with_name("words_that_matter.txt").read_text(encoding="utf-8").split())
@@ -291,6 +296,7 @@ def _unpunctuated(example: Example, others: Mapping[str, Sequence[Example]], ran
 _Change = Callable[[Example, Mapping[str, Sequence[Example]], Random], Example]
 _CHANGES: Sequence[tuple[float, _Change]] = (
     (0.5, _mirror), (0.25, _flip), (0.12, _continued), (0.05, _corrected), (0.04, _elsewhere),
-    (0.05, _beside_the_point),    (0.2, _reworded), (0.06, _misheard), (0.12, _mistyped), (0.1, _unpunctuated),
+    (0.05, _beside_the_point), (0.25, _added), (0.2, _reworded), (0.06, _misheard), (0.12, _mistyped),
+    (0.1, _unpunctuated),
 )  # fmt: skip
 """How often each change is made, in the order in which they are."""
