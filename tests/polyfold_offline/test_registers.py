@@ -54,7 +54,7 @@ def test_the_table_counts_what_is_to_be_folded_apart_from_what_is_not():
     assert "| all 2 | 2 | 50.0 [" in said
 
 
-def test_the_command_prints_table_and_curve(monkeypatch, capsys):
+def test_the_command_prints_table_and_curve(monkeypatch, capsys, tmp_path):
     sentences = [
         Sentence("a", "square", "half L", LEFT_OVER),
         Sentence("a", "square", "no part", "Fold the third leg."),
@@ -62,5 +62,6 @@ def test_the_command_prints_table_and_curve(monkeypatch, capsys):
     monkeypatch.setattr(registers, "read_sentences", lambda use: sentences)
     assert main(["--brief"]) == 0
     assert "| a | 1 | 100.0 |" in capsys.readouterr().out
-    assert main(["--curve"]) == 0
-    assert "| sure | right |" in capsys.readouterr().out
+    assert main(["--curve", "--picture", str(tmp_path / "curve.png")]) == 0
+    assert "| 0.6 | 100.0 | 0.0 | 0.0 |" in capsys.readouterr().out
+    assert (tmp_path / "curve.png").stat().st_size > 1000

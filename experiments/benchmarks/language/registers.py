@@ -211,8 +211,17 @@ def _row(name: str, verdicts: Sequence[Verdict], clustered: bool = False) -> str
     return f"| {name} | {len(meant)} | {' | '.join(cells)} | {len(never)} | {said(never, RIGHT)} |"
 
 
-def curve(sentences: Sequence[Sentence], weights: Path | None) -> str:
-    """What the backend ``offline`` answers at other thresholds, as a markdown table."""
+@dataclass(frozen=True)
+class Answer:
+    """What the backend ``offline`` would answer if it refused nothing, and how sure it is of it, 0 to 1."""
+
+    sentence: Sentence
+    sure: float
+    result: str
+
+
+def answers(sentences: Sequence[Sentence], weights: Path | None) -> list[Answer]:
+    """The likeliest reading of each sentence."""
     from polyfold_offline.reading.reader import Reader
     from polyfold_offline.weights import checked_folder
 
@@ -222,18 +231,46 @@ def curve(sentences: Sequence[Sentence], weights: Path | None) -> str:
         garment = Garment(sentence.garment, sentence.garment, {}, SIZES[sentence.garment])
         best = reader.readings(sentence.text, garment)[0]
         lines = lines_of(best.folding.folds, laid(sentence.garment)) if best.folding else None
-        found.append((sentence, best.sure, result_of(sentence, lines)))
-    meant = [entry for entry in found if not entry[0].impossible]
-    never = [entry for entry in found if entry[0].impossible]
+        found.append(Answer(sentence, best.sure, result_of(sentence, lines)))
+    return found
+
+
+def shares_at(least: float, found: Sequence[Answer]) -> tuple[float, float, float]:
+    """Per cent right and folded otherwise among what is to be folded, and refused of what is to be refused."""
+    meant = [answer for answer in found if not answer.sentence.impossible]
+    never = [answer for answer in found if answer.sentence.impossible]
+
+    def share(among: Sequence[Answer], result: str) -> float:
+        return 100 * sum(a.result == result and a.sure >= least for a in among) / max(1, len(among))
+
+    return share(meant, RIGHT), share(meant, SILENT), 100 - share(never, SILENT)
+
+
+def curve(found: Sequence[Answer]) -> str:
+    """What other thresholds would have answered, as a markdown table."""
     rows = ["| sure | right | another fold | refused | impossible refused |", "|" + "---|" * 5]
     for least in THRESHOLDS:
-        right = sum(result == RIGHT and sure >= least for _, sure, result in meant)
-        silent = sum(result == SILENT and sure >= least for _, sure, result in meant)
-        wrong = sum(result == SILENT and sure >= least for _, sure, result in never)
-        shares = [100 * right / len(meant), 100 * silent / len(meant), 100 - 100 * (right + silent) / len(meant)]
-        cells = [f"{value:.1f}" for value in (*shares, 100 - 100 * wrong / max(1, len(never)))]
-        rows.append(f"| {least:g} | {' | '.join(cells)} |")
+        right, silent, refused = shares_at(least, found)
+        rows.append(f"| {least:g} | {right:.1f} | {silent:.1f} | {100 - right - silent:.1f} | {refused:.1f} |")
     return "\n".join(rows)
+
+
+def draw_curve(found: Sequence[Answer], path: Path) -> None:
+    """Draw right answers over silently wrong ones, for every threshold."""
+    from matplotlib.figure import Figure
+
+    levels = sorted({answer.sure for answer in found}, reverse=True)
+    points = np.array([shares_at(least, found) for least in levels])
+    figure = Figure(figsize=(5.2, 3.6), layout="constrained")
+    axes = figure.subplots()
+    axes.plot(points[:, 1], points[:, 0], color="#1f5f8b")
+    for least in THRESHOLDS:
+        right, silent, _ = shares_at(least, found)
+        axes.plot(silent, right, "o", color="#1f5f8b", markersize=4)
+        axes.annotate(f" {least:g}", (silent, right), fontsize=8, va="top")
+    axes.set(xlabel="another fold than was meant [%]", ylabel="right [%]", xlim=(0, None), ylim=(0, 100))
+    axes.grid(alpha=0.3)
+    figure.savefig(path, dpi=120)
 
 
 THRESHOLDS = (0.0, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95)
@@ -246,11 +283,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--llm", default="offline")
     parser.add_argument("--brief", action="store_true", help="no list of what went wrong")
     parser.add_argument("--curve", action="store_true", help="what other thresholds would have answered")
+    parser.add_argument("--picture", type=Path, metavar="PNG", help="with --curve: where to draw it")
     parser.add_argument("--weights", type=Path, metavar="DIR", help="with --curve: other weights than the shipped ones")
     options = parser.parse_args(arguments)
     sentences = read_sentences(options.use)
     if options.curve:
-        print(curve(sentences, options.weights))
+        found = answers(sentences, options.weights)
+        print(curve(found))
+        if options.picture is not None:
+            draw_curve(found, options.picture)
         return 0
     planner, llm = create("planners", "hierarchical"), create("llms", options.llm)
     verdicts = [judge(sentence, planner, llm) for sentence in tqdm(sentences, desc=options.llm)]

@@ -24,7 +24,13 @@ FEW_SMALL = 0.6
 MISSED = 3.0
 """A size missed by a factor e is as bad as this many more folds."""
 
-_SHARES = {"half": 1 / 2, "third": 1 / 3, "quarter": 1 / 4, "eighth": 1 / 8}
+_SHARES = {
+    "three-quarters": 3 / 4, "half": 1 / 2, "third": 1 / 3, "quarter": 1 / 4, "sixth": 1 / 6, "eighth": 1 / 8,
+    "sixteenth": 1 / 16,
+}  # fmt: skip
+_NEARLY = 1.5
+"""What is at most so many times as large as the smallest end counts as small as it gets."""
+
 _SIDES = {"T": "top", "B": "bottom", "L": "left", "R": "right"}
 
 
@@ -64,6 +70,9 @@ def demands(goal: Piece, size_cm: tuple[float, float] | None, garment: Garment) 
     elif goal.place == "neat":
         small = SMALL.get(garment.family, PLAIN_SMALL)
         yield "a small block", lambda o: o.rectangular > 0.85 and o.area <= small and o.slim > 0.3
+    elif goal.place == "tiny":
+        smallest = min(outcome.area for outcome in outcomes(garment.family))
+        yield "as small as it gets", lambda outcome: outcome.area < _NEARLY * smallest
     else:
         yield _WORDS[goal.place], _TESTS[goal.place]
     if count is not None:
@@ -107,7 +116,7 @@ def _triangle(outcome: Outcome) -> bool:
 
 _TESTS: dict[str, Test] = {
     **{name: _sized(share) for name, share in _SHARES.items()},
-    "square": lambda outcome: outcome.rectangular > 0.85 and outcome.slim > 0.65 and outcome.area < 0.7,
+    "square": lambda outcome: outcome.rectangular > 0.85 and outcome.slim > 0.65 and outcome.area < 0.6,
     "triangle": _triangle,
     "small-triangle": lambda outcome: _triangle(outcome) and outcome.area < 0.3,
     "strip": lambda outcome: outcome.rectangular > 0.7 and outcome.slim < 0.55 and outcome.width < 0.6,
@@ -119,8 +128,9 @@ _TESTS: dict[str, Test] = {
     "one-leg": lambda outcome: _halves(outcome, "left", "right"),
 }
 _WORDS = {
-    "half": "half as large", "third": "a third as large", "quarter": "a quarter as large",
-    "eighth": "an eighth as large",
+    "three-quarters": "three quarters as large", "half": "half as large",
+    "third": "a third as large", "quarter": "a quarter as large",
+    "sixth": "a sixth as large", "eighth": "an eighth as large", "sixteenth": "a sixteenth as large",
     "square": "a smaller square", "triangle": "a triangle", "small-triangle": "a halved triangle",
     "strip": "a narrow band", "letter": "folded like a letter", "gate": "folded like cupboard doors",
     "envelope": "folded like an envelope", "sleeveless": "without sleeves", "shorts": "as short as shorts",

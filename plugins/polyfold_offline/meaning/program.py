@@ -19,8 +19,8 @@ NONE = "-"
 EDGES = ("L", "R", "T", "B")
 CORNERS = ("BL", "TL", "TR", "BR")
 GOALS = (
-    "neat", "half", "third", "quarter", "eighth", "square", "triangle", "small-triangle", "strip", "letter", "gate",
-    "envelope", "point", "sleeveless", "shorts", "one-leg",
+    "neat", "tiny", "three-quarters", "half", "third", "quarter", "sixth", "eighth", "sixteenth", "square", "triangle",
+    "small-triangle", "strip", "letter", "gate", "envelope", "point", "sleeveless", "shorts", "one-leg",
 )  # fmt: skip
 REASONS = ("action", "garment", "part", "impossible", "contradiction", "nonsense", "unclear")
 FRACTIONS = ("1/3", "1/4", "1/5", "1/6", "1/8", "2/3", "2/5", "3/4")
@@ -35,8 +35,8 @@ OPERATIONS = ("end", "half", "mid", "strip", "centre", "across", "sleeve", "goal
 PLACES = (NONE, *_WAYS, "long", "short", *CORNERS, *GOALS, *REASONS, *LENGTHS)
 DETAILS = (NONE, *MANNERS, *FRACTIONS, *COUNTS, *(f"point-{side}" for side in ("T", "L", "R", "B", "any")), *LENGTHS)
 
-_ANY_GOALS = ("neat", "half", "third", "quarter", "strip", "letter")
-_CLOTH_GOALS = (*_ANY_GOALS, "eighth", "square", "triangle", "small-triangle", "gate", "envelope", "point")
+_ANY_GOALS = ("neat", "tiny", "three-quarters", "half", "third", "quarter", "sixth", "eighth", "strip", "letter")
+_CLOTH_GOALS = (*_ANY_GOALS, "sixteenth", "square", "triangle", "small-triangle", "gate", "envelope", "point")
 _CORNERS = {"centre": (*CORNERS, "any"), "across": (*CORNERS, "any")}
 _STRIPS = {"strip": (*EDGES, "any")}
 _ALLOWED: dict[str, dict[str, tuple[str, ...]]] = {
@@ -44,9 +44,12 @@ _ALLOWED: dict[str, dict[str, tuple[str, ...]]] = {
     "rectangle": {"half": (*_WAYS, "long", "short"), "mid": _WAYS, **_STRIPS, **_CORNERS, "goal": _CLOTH_GOALS},
     "tshirt": {
         "half": _WAYS, "mid": ("L", "R", "any"), **_STRIPS, "sleeve": ("L", "R", "any"),
-        "goal": (*_ANY_GOALS, "eighth", "sleeveless"),
+        "goal": (*_ANY_GOALS, "sleeveless"),
     },
-    "pants": {"half": _WAYS, "mid": ("L", "R", "any"), **_STRIPS, "goal": (*_ANY_GOALS, "shorts", "one-leg")},
+    "pants": {
+        "half": _WAYS, "mid": ("L", "R", "any"), **_STRIPS,
+        "goal": (*_ANY_GOALS, "sixteenth", "shorts", "one-leg"),
+    },
     "other": {"half": _WAYS, "mid": _WAYS, **_STRIPS, "goal": _ANY_GOALS},
 }  # fmt: skip
 

@@ -37,14 +37,20 @@ class Batches:
         seed: of all choices.
         """
         self._written, self._made, self._pieces, self._size, self._seed = written, made, pieces, size, seed
+        self._kept: tuple[int, list[tuple[list[int], Example]]] | None = None
         self._others = {family: [e for e in written if e.family == family] for family in FAMILIES}
 
     def __call__(self, step: int) -> Batch:
         """The batch of a step."""
         block, place = divmod(step, _TOGETHER)
-        drawn = self._drawn(Random(f"{self._seed} {block}"))
-        mine = sorted(drawn, key=lambda it: len(it[0]))[place * self._size : (place + 1) * self._size]
-        return collate(mine)
+        return collate(self._sorted(block)[place * self._size : (place + 1) * self._size])
+
+    def _sorted(self, block: int) -> list[tuple[list[int], Example]]:
+        """The sentences of a block, the shortest first; the last block is kept, since its steps follow each other."""
+        if self._kept is None or self._kept[0] != block:
+            drawn = self._drawn(Random(f"{self._seed} {block}"))
+            self._kept = block, sorted(drawn, key=lambda it: len(it[0]))
+        return self._kept[1]
 
     def _drawn(self, random: Random) -> list[tuple[list[int], Example]]:
         found = []

@@ -38,7 +38,7 @@ class Schedule:
         every: steps between checkpoints.
     """
 
-    steps: int = 6000
+    steps: int = 5500
     size: int = 32
     rate: float = 1e-4
     decoder_rate: float = 3e-4
