@@ -64,7 +64,7 @@ def test_lists_of_corners_are_told_in_their_order_or_numbered():
         at = {place: match.start() for place, name in PLACES.items() if (match := re.search(name, text))}
         if {piece.operation for piece in example.program} != {"centre"} or len(places) < 2 or at.keys() != set(places):
             continue
-        if not re.search(r"first|last|before|second|prior|end with|to finish", text):
+        if not re.search(r"first|last|before|second|prior|once|end with|to finish", text):
             assert sorted(places, key=at.__getitem__) == places, example.text
             checked += 1
     assert checked > 20

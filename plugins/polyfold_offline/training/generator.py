@@ -170,7 +170,14 @@ class _Speaker:
             o=self._random.choice(self._parts.get(OPPOSITE.get(piece.place, ""), ["other side"])),
             w=self._random.choice(self._phrases["widths"].get(piece.detail, [f"{piece.detail} cm"])),
             m=self._random.choice(self._phrases["manners"].get(piece.detail, [""])),
+            **dict(zip("ab", self._diagonal(piece), strict=True)),
         )
+
+    def _diagonal(self, piece: Piece) -> list[str]:
+        """The corners between which the crease runs when a corner goes onto the opposite one."""
+        ends = [c for c in CORNERS if c not in (piece.place, OPPOSITE.get(piece.place))]
+        self._random.shuffle(ends)
+        return [self._name(piece, end) for end in ends[:2]]
 
 
 _THREE_CORNERS, _LISTED, _TOLD_AS_LIST, _NUMBERED, _SHUFFLED = 0.04, 0.1, 0.75, 0.35, 0.3

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from random import Random
 
@@ -90,8 +91,23 @@ def _flip(example: Example, others: Mapping[str, Sequence[Example]], random: Ran
 
 
 def _seen_otherwise(example: Example, words: Mapping[str, str], places: dict[str, str]) -> Example:
+    """The example with sides exchanged; unchanged where what it leaves open is settled by an order of sides."""
     text, program = _replaced(example.text, words), rename(example.program, places)
+    if text == example.text or (_told_together(example.program) and _TOGETHER.search(example.text)):
+        return example
     return Example(example.family, text, program, example.register)
+
+
+_TOGETHER = re.compile(
+    r"\b(?:both|all|each|every|any|two|three|four|pair|sleeves|arms|wings|corners|sides|edges|ends|flaps|thirds|tips"
+    r"|points|doors|leaves|rest|others?|either|whole)\b",
+    re.IGNORECASE,
+)
+"""Words by which several parts are named at once, so that their order is the usual one (``MEANINGS.md``)."""
+
+
+def _told_together(program: Program) -> bool:
+    return any(a.operation == b.operation != "half" for a, b in pairwise(program))
 
 
 # Sentences put together ----------------------------------------------------------------------------------------------
