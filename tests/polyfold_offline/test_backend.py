@@ -97,7 +97,8 @@ def test_plain_sentences_are_carried_out_however_the_garment_lies(planner, llm, 
     [
         ("square", "fold the left sleeve"), ("tshirt", "fold the trousers in half"), ("tshirt", "iron the shirt"),
         ("square", ""), ("square", "   "), ("pants", "what's the weather like?"),
-        ("rectangle", "wash it at sixty degrees"), ("tshirt", "Unfold the shirt."), ("pants", "please mend the left leg"),
+        ("rectangle", "wash it at sixty degrees"), ("tshirt", "Unfold the shirt."),
+        ("pants", "please mend the left leg"),
     ],
 )  # fmt: skip
 def test_what_is_no_fold_of_this_garment_is_refused(planner, llm, kind, text):
