@@ -50,6 +50,8 @@ def test_what_is_said_to_stay_is_none_of_what_moves():
         asides = {aside for aside, _ in told(code)}
         assert not [aside for aside in asides if re.search(rf"\b({moves})\b", aside)]
     assert any("right" in aside for aside, _ in told("half L"))
+    assert any("left sleeve" in aside for aside, _ in told("sleeve R any; half B", "tshirt"))
+    assert not any("sleeve" in aside for aside, _ in told("sleeve R any; half L", "tshirt"))
 
 
 def test_nothing_is_added_to_a_refusal():

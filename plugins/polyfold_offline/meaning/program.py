@@ -18,6 +18,7 @@ NONE = "-"
 
 EDGES = ("L", "R", "T", "B")
 CORNERS = ("BL", "TL", "TR", "BR")
+OPPOSITE = {"L": "R", "R": "L", "T": "B", "B": "T", "BL": "TR", "TR": "BL", "TL": "BR", "BR": "TL"}
 GOALS = (
     "neat", "tiny", "three-quarters", "half", "third", "quarter", "sixth", "eighth", "sixteenth", "square", "triangle",
     "small-triangle", "strip", "letter", "gate", "envelope", "point", "sleeveless", "shorts", "one-leg",

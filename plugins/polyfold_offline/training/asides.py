@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
-from pathlib import Path
+from itertools import chain
 from random import Random
-from typing import Any
 
-from polyfold_offline.meaning.program import CORNERS, EDGES, Piece, Program
+from polyfold_offline.meaning.program import CORNERS, EDGES, OPPOSITE, Piece, Program
 from polyfold_offline.training.corpus import Example
-
-OPPOSITE = {"L": "R", "R": "L", "T": "B", "B": "T", "BL": "TR", "TR": "BL", "TL": "BR", "BR": "TL"}
-
-
-@cache
-def _phrases(name: str) -> Mapping[str, Any]:
-    return tomllib.loads(Path(__file__).with_name(name).read_text(encoding="utf-8"))
+from polyfold_offline.training.phrases import phrases
 
 
 def with_aside(example: Example, random: Random) -> Example:
@@ -31,6 +22,17 @@ def with_aside(example: Example, random: Random) -> Example:
 
 def _with(example: Example, text: str, program: Program | None = None) -> Example:
     return Example(example.family, text, program or example.program, example.register)
+
+
+def _beside(
+    example: Example, ways: Mapping[str, Sequence[str]], random: Random, program: Program | None = None, **words: str
+) -> Example:
+    """The example with a phrase before or after it, whichever ``ways`` has."""
+    place = random.choice([name for name in ("before", "after") if name in ways])
+    said = random.choice(ways[place]).format(**words)
+    if place == "before":
+        return _with(example, _begun(said, random) + example.text, program)
+    return _with(example, f"{_bare(example.text)}{said}.", program)
 
 
 def _bare(text: str) -> str:
@@ -48,12 +50,9 @@ _CAPITAL = 0.6
 
 
 def _comes_of(example: Example, random: Random) -> Example:
-    said = [
-        phrase for key in _keys(example.program, example.family) for phrase in _phrases("asides.toml")["comes_of"][key]
-    ]
-    if not said:
-        return example
-    return _with(example, f"{_bare(example.text)}{random.choice((', ', ', ', '. ', ' - ', ' '))}{random.choice(said)}.")
+    lists = [phrases("asides")["comes_of"][key] for key in _keys(example.program, example.family)]
+    said = [random.choice((", ", ", ", ". ", " - ", " ")) + phrase for phrase in chain(*lists)]
+    return _beside(example, {"after": said}, random) if said else example
 
 
 def _keys(program: Program, family: str) -> list[str]:
@@ -61,7 +60,7 @@ def _keys(program: Program, family: str) -> list[str]:
     operations = [piece.operation for piece in program]
     if operations == ["half", "half"]:
         return ["quarter"]
-    if len(program) > 1 or operations[0] not in _phrases("asides.toml")["comes_of"]:
+    if len(program) > 1 or operations[0] not in phrases("asides")["comes_of"]:
         return []
     way = {"L": "side", "R": "side", "T": "end", "B": "end"}.get(program[0].place, "")
     if operations[0] != "half" or not way:
@@ -73,23 +72,20 @@ def _keys(program: Program, family: str) -> list[str]:
 
 
 def _leaves(example: Example, random: Random) -> Example:
-    stays = _untouched(example.program)
+    stays, ways = _untouched(example.program), phrases("asides")["leaves"]
     if not stays:
         return example
-    parts = _phrases("phrases.toml")["parts"]
-    names = {**parts["plain"], **parts.get(example.family, {})}
-    if any(piece.operation == "sleeve" for piece in example.program):
-        names = _phrases("phrases.toml")["sleeves"]
-    told = " and the ".join(random.choice(names[place]) for place in stays)
     if len(stays) > 1 and random.random() < _REST:
-        told = f"other {('two', 'three')[len(stays) - 2]}"
-    ways = _phrases("asides.toml")["leaves"]
-    if random.random() < _BEFORE and not told.startswith("other"):
-        return _with(example, _begun(random.choice(ways["before"]).format(q=told), random) + example.text)
-    return _with(example, f"{_bare(example.text)}{random.choice(ways['after']).format(q=told)}.")
+        return _beside(example, {"after": ways["after"]}, random, q=f"other {('two', 'three')[len(stays) - 2]}")
+    said = phrases("plain")
+    names = {**said["parts"]["plain"], **said["parts"].get(example.family, {})}
+    if any(piece.operation == "sleeve" for piece in example.program):
+        names = said["sleeves"]
+    return _beside(example, ways, random, q=" and the ".join(random.choice(names[place]) for place in stays))
 
 
-_REST, _BEFORE = 0.4, 0.55
+_REST = 0.4
+"""Share of several parts that are called the others."""
 
 
 def _untouched(program: Program) -> list[str]:
@@ -97,7 +93,8 @@ def _untouched(program: Program) -> list[str]:
     places = [piece.place for piece in program]
     operations = {piece.operation for piece in program}
     if "sleeve" in operations:
-        sides = {piece.place for piece in program if piece.operation == "sleeve"}
+        # The other sleeve lies still as long as nothing goes sideways besides.
+        sides = {place for place in places if place not in ("T", "B")}
         return [OPPOSITE[side] for side in sides] if len(sides) == 1 and sides <= {"L", "R"} else []
     if operations == {"centre"} and set(places) <= set(CORNERS):
         return [corner for corner in CORNERS if corner not in places]
@@ -110,30 +107,24 @@ def _untouched(program: Program) -> list[str]:
 
 
 def _counted(example: Example, random: Random) -> Example:
-    counts, many = _phrases("asides.toml")["counts"], len(example.program)
-    if many > len(_NUMBERS) or ("fold" in example.text and any(f"{n} " in example.text.lower() for n in _NUMBERS)):
+    counts, many = phrases("asides")["counts"], len(example.program)
+    if many > len(_NUMBERS):
         return example
-    number = random.choice(counts[_NUMBERS[many - 1]])
-    if random.random() < 0.5:
-        return _with(example, _begun(random.choice(counts["before"]).format(n=number), random) + example.text)
-    return _with(example, f"{_bare(example.text)}{random.choice(counts['after']).format(n=number)}.")
+    return _beside(example, counts, random, n=random.choice(counts[_NUMBERS[many - 1]]))
 
 
 _NUMBERS = ("one", "two", "three", "four")
 
 
 def _too_many(example: Example, random: Random) -> Example:
-    """The wish for several folds, and for one fold only."""
-    if len(example.program) != 2 or "half any" in map(str, example.program):
+    """The wish for two folds, and for one fold only; of any other wish, that this is all."""
+    if len(example.program) != 2 or Piece("half", "any") in example.program:
         return _ended(example, random)
-    counts, never = _phrases("asides.toml")["counts"], (Piece("no", "contradiction"),)
-    if random.random() < 0.5:
-        return _with(example, _begun(random.choice(counts["against"]), random) + example.text, never)
-    return _with(example, f"{_bare(example.text)}{random.choice(counts['against-after'])}.", never)
+    return _beside(example, phrases("asides")["against"], random, (Piece("no", "contradiction"),))
 
 
 def _ended(example: Example, random: Random) -> Example:
-    return _with(example, f"{_bare(example.text)}{random.choice(_phrases('asides.toml')['ends']['said'])}.")
+    return _beside(example, phrases("asides")["ends"], random)
 
 
 # Talk -----------------------------------------------------------------------------------------------------------------
@@ -141,14 +132,14 @@ def _ended(example: Example, random: Random) -> Example:
 
 def _talked(example: Example, random: Random) -> Example:
     """The wish within a stream of talk."""
-    talk = _phrases("asides.toml")["talk"]
+    talk = phrases("asides")["talk"]
 
     def some(most: int) -> list[str]:
         return random.sample(talk["said"], random.randrange(most + 1))
 
     before, after = some(2), some(3)
     if random.random() < _STREAM:
-        told, joins = example.text.rstrip(" .!"), talk["joins"]
+        told, joins = _bare(example.text), talk["joins"]
         text = "".join(part + random.choice(joins) for part in before) + told[0].lower() + told[1:]
         return _with(example, text + "".join(random.choice(joins) + part for part in after))
     sentences = [*(_begun(part, random) for part in before), example.text.rstrip(), *(_begun(p, random) for p in after)]

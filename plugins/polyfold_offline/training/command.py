@@ -14,7 +14,9 @@ class TrainLanguage:
         """Add the options."""
         from polyfold_offline.training.learning import Schedule
 
-        parser.add_argument("sentences", type=Path, help="folder of *.jsonl, for example experiments/language/train")
+        parser.add_argument(
+            "sentences", type=Path, help="folder of *.jsonl, for example experiments/language/sentences/train"
+        )
         parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder; resumed if it exists")
         parser.add_argument(
             "--encoder",

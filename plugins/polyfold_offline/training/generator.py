@@ -2,32 +2,29 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from random import Random
 from typing import Any
 
 from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
 from polyfold_offline.meaning.folding import folds_of
-from polyfold_offline.meaning.program import CORNERS, EDGES, LENGTHS, Piece, Program
+from polyfold_offline.meaning.program import CORNERS, EDGES, LENGTHS, OPPOSITE, Piece, Program
 from polyfold_offline.reading.tokens import TOKENS, advance, begin, choices
-from polyfold_offline.training.asides import OPPOSITE
 from polyfold_offline.training.corpus import Example
+from polyfold_offline.training.phrases import phrases
 
 _FAMILIES = ("square", "rectangle", "tshirt", "pants", "other")
 
 
 def generate(count: int, seed: int) -> list[Example]:
     """So many sentences, the same for a seed."""
-    phrases = tomllib.loads(Path(__file__).with_name("phrases.toml").read_text(encoding="utf-8"))
     random = Random(seed)
     found: list[Example] = []
     while len(found) < count:
         family = random.choice(_FAMILIES)
         program = _program(family, random)
         if program is not None:
-            text = _Speaker(family, phrases, random).say(program)
+            text = _Speaker(family, phrases("plain"), random).say(program)
             found.append(Example(family, text, program, "generated"))
     return found
 
@@ -65,11 +62,11 @@ def _lengths(program: Program) -> list[str]:
 class _Speaker:
     """Says programs in one way of naming sides."""
 
-    def __init__(self, family: str, phrases: Mapping[str, Any], random: Random) -> None:
-        self._phrases, self._random = phrases, random
+    def __init__(self, family: str, said: Mapping[str, Any], random: Random) -> None:
+        self._phrases, self._random = said, random
         system = random.choice(_SYSTEMS)
-        self._parts = dict(phrases["parts"].get(family, phrases["parts"]["plain"]))
-        self._sleeves = dict(phrases["sleeves"])
+        self._parts = dict(said["parts"].get(family, said["parts"]["plain"]))
+        self._sleeves = dict(said["sleeves"])
         if system != "plain":
             self._rename(family, system)
 
@@ -165,12 +162,14 @@ class _Speaker:
         if piece.place not in (*EDGES, *CORNERS):
             key += "-again" if key == "half" and piece.place == "any" and number else f"-{piece.place}"
         said = self._random.choice(self._phrases["say"].get(key) or self._phrases["say"][piece.operation])
+        a, b = self._diagonal(piece)
         return said.format(
             p=self._name(piece, piece.place),
             o=self._random.choice(self._parts.get(OPPOSITE.get(piece.place, ""), ["other side"])),
             w=self._random.choice(self._phrases["widths"].get(piece.detail, [f"{piece.detail} cm"])),
             m=self._random.choice(self._phrases["manners"].get(piece.detail, [""])),
-            **dict(zip("ab", self._diagonal(piece), strict=True)),
+            a=a,
+            b=b,
         )
 
     def _diagonal(self, piece: Piece) -> list[str]:
@@ -180,7 +179,12 @@ class _Speaker:
         return [self._name(piece, end) for end in ends[:2]]
 
 
-_THREE_CORNERS, _LISTED, _TOLD_AS_LIST, _NUMBERED, _SHUFFLED = 0.04, 0.1, 0.75, 0.35, 0.3
+_THREE_CORNERS, _LISTED = 0.04, 0.1
+"""Shares of programs that fold in all corners but one, and that move several parts alike."""
+
+_TOLD_AS_LIST, _NUMBERED, _SHUFFLED = 0.75, 0.35, 0.3
+"""Shares of the latter that are told as a list, of lists that are numbered, and of these that are told out of order."""
+
 _SYSTEMS = ("plain", "plain", "plain", "compass", "clock", "facing")
 _TURNED = 0.3
 """Share of sentences that correct, deny or tell in another order."""
