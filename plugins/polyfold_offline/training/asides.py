@@ -57,12 +57,12 @@ def _comes_of(example: Example, random: Random) -> Example:
 
 def _keys(program: Program, family: str) -> list[str]:
     """The lists of phrases that tell what comes of a program."""
-    operations = [piece.operation for piece in program]
+    first, operations = program[0], [piece.operation for piece in program]
     if operations == ["half", "half"]:
         return ["quarter"]
-    if len(program) > 1 or operations[0] not in phrases("asides")["comes_of"]:
+    if len(operations) > 1 or operations[0] not in phrases("asides")["comes_of"]:
         return []
-    way = {"L": "side", "R": "side", "T": "end", "B": "end"}.get(program[0].place, "")
+    way = {"L": "side", "R": "side", "T": "end", "B": "end"}.get(first.place, "")
     if operations[0] != "half" or not way:
         return operations
     return ["half", f"pants-{way}" if family == "pants" else way]
