@@ -38,7 +38,7 @@ class Schedule:
         every: steps between checkpoints.
     """
 
-    steps: int = 5500
+    steps: int = 6000
     size: int = 32
     rate: float = 1e-4
     decoder_rate: float = 3e-4
@@ -72,7 +72,8 @@ class Learner:
         given = [p for name, p in named.items() if name.startswith(("places", "embedded", "encoder"))]
         new = [p for name, p in named.items() if name.startswith(("tokens", "steps", "decoder", "spell"))]
         groups = [{"params": given, "rate": plan.rate}, {"params": new, "rate": plan.decoder_rate}]
-        self.optimiser = torch.optim.AdamW(groups, lr=plan.rate, weight_decay=0.01)
+        self.optimiser = torch.optim.AdamW(groups, lr=plan.rate, weight_decay=0.01, fused=True)
+        self._moving = [(name, p) for name, p in named.items() if p.requires_grad]
         self.step = 0
 
     def learn(self) -> float:
@@ -91,8 +92,8 @@ class Learner:
         self.step += 1
         keep = min(_AVERAGED, self.step / (self.step + 10))
         with torch.no_grad():
-            for name, tensor in self.network.state_dict().items():
-                self.average[name].lerp_(tensor, 1 - keep)
+            for name, parameter in self._moving:
+                self.average[name].lerp_(parameter, 1 - keep)
         return float(loss.detach())
 
     def save(self, path: Path) -> None:

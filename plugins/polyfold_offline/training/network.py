@@ -44,16 +44,14 @@ class Attention(nn.Module):
         super().__init__()
         self.query, self.key, self.value, self.out = (nn.Linear(WIDTH, WIDTH) for _ in range(4))
 
-    def forward(self, x: Tensor, over: Tensor, mask: Tensor | None, causal: bool = False, drop: float = 0.0) -> Tensor:
+    def forward(self, x: Tensor, over: Tensor, mask: Tensor | None, causal: bool = False) -> Tensor:
         """Attend from ``x`` (N, S, WIDTH) over ``over`` (N, T, WIDTH); mask (N, 1, 1, T)."""
 
         def split(y: Tensor) -> Tensor:
             return y.unflatten(-1, (HEADS, -1)).transpose(1, 2)
 
         query, key, value = split(self.query(x)), split(self.key(over)), split(self.value(over))
-        got = functional.scaled_dot_product_attention(
-            query, key, value, attn_mask=mask, is_causal=causal, dropout_p=drop if self.training else 0.0
-        )
+        got = functional.scaled_dot_product_attention(query, key, value, attn_mask=mask, is_causal=causal)
         return self.out(got.transpose(1, 2).flatten(2))
 
 
@@ -67,14 +65,14 @@ class Layer(nn.Module):
         self.crossed = nn.LayerNorm(WIDTH, eps=1e-12) if across else None
         self.rise, self.fall = nn.Linear(WIDTH, INNER), nn.Linear(INNER, WIDTH)
         self.done = nn.LayerNorm(WIDTH, eps=1e-12)
-        self.drop, self.rate = nn.Dropout(drop), drop
+        self.drop = nn.Dropout(drop)
 
     def forward(self, x: Tensor, mask: Tensor | None, read: Tensor | None = None) -> Tensor:
         """Shapes as of ``Attention``; ``read``: the sentence's states, which ``mask`` is then about."""
         own = None if read is not None else mask
-        x = self.attended(x + self.drop(self.attention(x, x, own, causal=read is not None, drop=self.rate)))
+        x = self.attended(x + self.drop(self.attention(x, x, own, causal=read is not None)))
         if self.across is not None and self.crossed is not None and read is not None:
-            x = self.crossed(x + self.drop(self.across(x, read, mask, drop=self.rate)))
+            x = self.crossed(x + self.drop(self.across(x, read, mask)))
         return self.done(x + self.drop(self.fall(functional.gelu(self.rise(x)))))
 
 
