@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from polyfold.errors import ConfigError, validation_problem
+from polyfold.errors import ConfigError, file_problem, validation_problem
 
 __all__ = ["ComponentSpec", "Experiment", "load_experiment", "read_toml", "to_toml"]
 
@@ -80,9 +80,9 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     """The content of a TOML file. Raises ConfigError with the file and the line that is wrong."""
     path = Path(path)
     try:
-        return tomllib.loads(path.read_text("utf-8"))
-    except FileNotFoundError as error:
-        raise ConfigError(f"there is no file {path}; check the path") from error
+        return tomllib.loads(path.read_text("utf-8-sig"))
+    except OSError as error:
+        raise ConfigError(file_problem(error, path)) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ConfigError(f"{path} is not valid TOML: {error}; correct it") from error
 

@@ -17,6 +17,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from polyfold.cli import whole_number
 from polyfold.errors import ConfigError, LLMAccessError, LLMError
 from polyfold.types import Reply
 from polyfold_llms.batch import FORMS, PendingRequest, export_line, read_answers, read_pending, with_cost
@@ -57,7 +58,9 @@ def _configure(parser: argparse.ArgumentParser) -> None:
     fill.add_argument(
         "--set", metavar="PARAM=VALUE", action="append", default=[], help="a parameter of that backend; may be repeated"
     )
-    fill.add_argument("--workers", type=int, default=8, metavar="N", help="calls at once, with --llm (default: 8)")
+    fill.add_argument(
+        "--workers", type=whole_number(1), default=8, metavar="N", help="calls at once, with --llm (default: 8)"
+    )
 
 
 def _setting(text: str) -> tuple[str, Any]:

@@ -20,6 +20,7 @@ from polyfold.logs._files import write_atomically
 from polyfold.logs._writing import fold_record, transcript_lines
 from polyfold.plugins.interfaces import RecordsMotion, Simulator
 from polyfold.rollout import run_episode
+from polyfold.rollout._sentences import plain
 from polyfold.types import Episode, Observation
 
 GIF_RATE = 12.0
@@ -57,6 +58,7 @@ def fold(
         RefusedError: if the instruction can't be understood or done; nothing is folded.
         PolyfoldError: if grounding, planning or simulation fail; ``out`` then holds what was done until then.
     """
+    instruction = plain(instruction)
     experiment = (experiment or Experiment()).override(components)
     if isinstance(garment, str):
         garment = named_garment(garment, seed=seed, experiment=experiment)

@@ -10,13 +10,15 @@ import sys
 import warnings
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Any, Protocol, TextIO
+from typing import Any, NoReturn, Protocol, TextIO
 
 import polyfold
-from polyfold import plugins
-from polyfold.errors import PolyfoldError, RefusedError
+from polyfold.cli._boundary import answer, flush, speak_any_text
+from polyfold.cli._numbers import metres, whole_number
+from polyfold.errors import did_you_mean
+from polyfold.plugins import catalog, refresh
 
-__all__ = ["main"]
+__all__ = ["main", "metres", "whole_number"]
 
 VERBS = {
     "fold": ("polyfold.cli.fold", "fold a garment from a sentence, in simulation"),
@@ -29,8 +31,6 @@ VERBS = {
     "prompt": ("polyfold.cli.prompt", "show what a language model is told"),
     "plugins": ("polyfold.cli.plugins", "list the installed plugins and their components"),
 }
-
-FAILED, REFUSED, INTERRUPTED = 1, 3, 130
 
 
 class Verb(Protocol):
@@ -48,39 +48,53 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status: 0 done, 1 failed, 2 wrong usage, 3 refused, 130 interrupted."""
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     warnings.showwarning = _show_warning
+    speak_any_text()
     if "--no-plugins" in arguments:
         arguments.remove("--no-plugins")
-        plugins.refresh(third_party=False)
+        refresh(third_party=False)
     try:
-        parsed = _parser(arguments).parse_args(arguments)
-        return parsed.run(parsed)
-    except RefusedError as error:
-        print(f"polyfold: refused: {error}", file=sys.stderr)
-        return REFUSED
-    except PolyfoldError as error:
-        print(f"polyfold: {error}", file=sys.stderr)
-        return FAILED
-    except BrokenPipeError:
-        return FAILED
-    except OSError as error:
-        print(f"polyfold: {error}; check the path and what may be read and written there", file=sys.stderr)
-        return FAILED
-    except KeyboardInterrupt:
-        print("polyfold: interrupted", file=sys.stderr)
-        return INTERRUPTED
+        status = _run(arguments)
+        flush()
+    except (Exception, KeyboardInterrupt) as error:
+        answered = answer(error)
+        if answered is None:
+            raise
+        message, status = answered
+        if message:
+            print(f"polyfold: {message}", file=sys.stderr)
+    return status
+
+
+def _run(arguments: Sequence[str]) -> int:
+    parser = _parser(arguments)
+    parsed = parser.parse_args(arguments)
+    if parsed.verb is None:
+        parser.print_help()
+        return 0
+    return parsed.run(parsed)
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line; the options are a ``--help`` away."""
+
+    def error(self, message: str) -> NoReturn:
+        """End with exit status 2."""
+        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
 
 
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="polyfold", description="Fold cloth with two robot arms from a sentence.", allow_abbrev=False
-    )
+    parser = Parser(prog="polyfold", description="Fold cloth with two robot arms from a sentence.", allow_abbrev=False)
     parser.add_argument("--version", action="version", version=f"polyfold {polyfold.__version__}")
     parser.add_argument("--no-plugins", action="store_true", help="ignore the plugins of other distributions")
-    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB")
     chosen = next((argument for argument in arguments if not argument.startswith("-")), None)
     # Only the verb that is asked for is imported; the plugins' verbs are looked up when it is not one of ours.
-    for verb, (module, summary) in {**VERBS, **({} if chosen in VERBS else _plugin_verbs())}.items():
-        subparser = verbs.add_parser(verb, help=summary, description=summary.capitalize() + ".", allow_abbrev=False)
+    known = {**VERBS, **({} if chosen in VERBS else _plugin_verbs())}
+    if chosen is not None and chosen not in known:
+        parser.error(f"there is no verb {chosen!r}; {did_you_mean(chosen, known)}")
+    for verb, (module, summary) in known.items():
+        told = summary.replace("%", "%%")  # argparse fills in what a % announces
+        subparser = verbs.add_parser(verb, help=told, description=told.capitalize() + ".", allow_abbrev=False)
         if verb == chosen:
             implementation = _implementation(module)
             implementation.configure(subparser)
@@ -89,7 +103,7 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _plugin_verbs() -> dict[str, tuple[str, str]]:
-    found = plugins.catalog().components["commands"]
+    found = catalog().components["commands"]
     return {name: (str(entries[0].target), entries[0].summary) for name, entries in sorted(found.items())}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
@@ -28,6 +29,38 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str | None = None) 
     if otherwise is not None:
         return otherwise
     return f"the known ones are {', '.join(known)}" if known else "there are none"
+
+
+def file_problem(error: OSError, path: object = None) -> str:
+    """Say why a file could not be read or written, and what to do.
+
+    Args:
+        error: what the operating system said.
+        path: of the file; by default the one that the error names.
+
+    Returns:
+        A whole message, such as ``there is no shirt.png; check the path``.
+    """
+    place = error.filename if path is None else path
+    if place is None:
+        said = error.strerror or str(error) or type(error).__name__
+        return f"reading or writing failed ({said}); check the disk and what may be written there"
+    for kind, told in _FILE_PROBLEMS:
+        if isinstance(error, kind):
+            return told.format(place)
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return f"{place} can't be written, the disk is full; make room, or choose another disk"
+    said = error.strerror or str(error) or type(error).__name__
+    return f"{place} can't be read or written ({said}); check the path"
+
+
+_FILE_PROBLEMS: tuple[tuple[type[OSError], str], ...] = (
+    (FileNotFoundError, "there is no file {}; check the path"),
+    (IsADirectoryError, "{} is a folder; give a file"),
+    (NotADirectoryError, "there can be no {}, since a part of this path is a file; check the path"),
+    (FileExistsError, "{} exists and is no folder; choose another path"),
+    (PermissionError, "{} may not be read or written by you; change its permissions, or choose another path"),
+)
 
 
 def validation_problem(error: ValidationError, known: Iterable[str] = (), below: int = 0) -> str:

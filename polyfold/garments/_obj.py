@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.errors import GarmentError
+from polyfold.errors import GarmentError, file_problem
 from polyfold.garments._flatten import flatten, front_faces
 from polyfold.garments._garment import Garment
 from polyfold.garments._pattern import Pattern
@@ -81,7 +81,7 @@ def _file_vertices(path: Path) -> Floats:
         rows = [[float(value) for value in line.split()[1:4]] for line in lines if line.startswith("v ")]
         vertices = np.array(rows, float).reshape(-1, 3)
     except OSError as error:
-        raise GarmentError(f"the mesh {path} can't be read ({error}); give an OBJ file") from error
+        raise GarmentError(file_problem(error, path)) from error
     except ValueError as error:
         raise GarmentError(f"the mesh {path} has a broken vertex line ({error}); export it again") from error
     if not len(vertices) or not np.isfinite(vertices).all():
@@ -92,10 +92,10 @@ def _file_vertices(path: Path) -> Floats:
 def _keypoint_indices(path: Path, pattern: Pattern, count: int) -> dict[str, int]:
     try:
         content: Any = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError) as error:
-        raise GarmentError(
-            f"the keypoints {path} can't be read ({error}); give a JSON object name -> vertex"
-        ) from error
+    except OSError as error:
+        raise GarmentError(file_problem(error, path)) from error
+    except (ValueError, RecursionError) as error:
+        raise GarmentError(f"the keypoints {path} are no JSON ({error}); write an object name -> vertex") from error
     if not isinstance(content, Mapping) or not content:
         raise GarmentError(f"{path} holds no keypoints; write a JSON object name -> vertex index")
     missing = [name for name in pattern.corners if name not in content]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.errors import GarmentError
+from polyfold.errors import GarmentError, file_problem
 from polyfold.garments._silhouette import find_cloth
 from polyfold.geometry import contour_of, polygon_area
 
@@ -81,12 +81,14 @@ def outline_from_photo(path: str | Path) -> NDArray[np.float64]:
 
 def _json(path: Path) -> Any:
     try:
-        text = path.read_text("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise GarmentError(f"the outline {path} can't be read ({error}); give a JSON file") from error
+        text = path.read_text("utf-8-sig")
+    except OSError as error:
+        raise GarmentError(file_problem(error, path)) from error
+    except UnicodeDecodeError as error:
+        raise GarmentError(f"the outline {path} is no text ({error}); give a JSON file in UTF-8") from error
     try:
         return json.loads(text)
-    except json.JSONDecodeError as error:
+    except (json.JSONDecodeError, RecursionError) as error:
         raise GarmentError(f"the outline {path} is not valid JSON ({error}); write [[x, y], ...] in pixels") from error
 
 
@@ -116,6 +118,15 @@ def _opened(path: Path) -> Any:
     try:
         picture = Image.open(path)
         picture.load()
-    except (OSError, UnidentifiedImageError, Image.DecompressionBombError) as error:
-        raise GarmentError(f"the picture {path} can't be read ({error}); give a PNG or JPEG file") from error
+    except UnidentifiedImageError as error:
+        raise GarmentError(f"{path} is no picture that can be read; give a PNG or JPEG file") from error
+    except Image.DecompressionBombError as error:
+        raise GarmentError(f"the picture {path} is too large ({error}); make it smaller first") from error
+    except OSError as error:
+        broken = error.errno is None  # of the picture's own data
+        raise GarmentError(
+            f"the picture {path} is damaged ({error}); save it again as PNG or JPEG"
+            if broken
+            else file_problem(error, path)
+        ) from error
     return picture

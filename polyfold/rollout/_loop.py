@@ -22,6 +22,7 @@ from polyfold.garments import Garment
 from polyfold.plugins._fabrics import garment_template
 from polyfold.plugins.interfaces import Agent, Simulator, UsesComponents
 from polyfold.rollout._inputs import PRIVILEGED, Start, goal_for
+from polyfold.rollout._sentences import plain
 from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import Task
 from polyfold.types import Decision, Episode, EpisodeStart, Failure, Observation, Role, Step, Subgoal
@@ -79,13 +80,14 @@ def run_episode(
         judge: scores the episode before observers are told of its end.
 
     Raises:
-        ConfigError: if the agent requires guidance and no task is given.
+        ConfigError: if the agent requires guidance and no task is given, or the instruction is no text.
     """
     if simulator is None:
         with closing(plugins.create_chosen(experiment, "simulator")) as own:
             return run_episode(
                 experiment, garment, instruction, seed, own, agent, task, agent_seed, role=role, judge=judge
             )
+    instruction = plain(instruction)
     agent = agent or build_agent(experiment)
     transcript = Transcript(
         plugins.create_chosen(experiment, "llm") if "instruction" in agent.requires else None,

