@@ -18,7 +18,7 @@ from tqdm import tqdm
 from polyfold import plugins
 from polyfold.api import attempt, garment
 from polyfold.config import Experiment
-from polyfold.logs import FoldRecord, RunDirectory
+from polyfold.logs import FoldRecord, RunDirectory, exclusive
 from polyfold.logs._records import KeyedRecord
 from polyfold.logs._writing import fold_record
 
@@ -101,8 +101,9 @@ def main(arguments: list[str] | None = None) -> None:
     plugins.register("tasks", "benchmark-loop", str(SUITE))
     jobs = [job for job in JOBS if chosen.job is None or job.task in chosen.job]
     agents = tuple(chosen.agent or AGENTS)
-    run = RunDirectory(chosen.out, {"benchmark": "loop", "policy": chosen.policy}, JobRecord)
-    _complete(run, jobs, agents, range(chosen.first_seed, chosen.first_seed + chosen.n), chosen.policy)
+    with exclusive(chosen.out):
+        run = RunDirectory(chosen.out, {"benchmark": "loop", "policy": chosen.policy}, JobRecord)
+        _complete(run, jobs, agents, range(chosen.first_seed, chosen.first_seed + chosen.n), chosen.policy)
     wanted = {_key(job, agent, chosen.first_seed + i) for job in jobs for agent in agents for i in range(chosen.n)}
     print(table([record for key, record in run.records().items() if key in wanted]))
 

@@ -22,7 +22,7 @@ from polyfold.api import attempt, garment, ground
 from polyfold.config import Experiment
 from polyfold.errors import PolyfoldError
 from polyfold.geometry import polygon_area
-from polyfold.logs import FoldRecord, RunDirectory
+from polyfold.logs import FoldRecord, RunDirectory, exclusive
 from polyfold.logs._records import KeyedRecord
 from polyfold.logs._writing import fold_record
 
@@ -62,7 +62,11 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--rows", choices=["odd", "even"], default="odd", help="report on odd rows, develop on even")
     parser.add_argument("--out", type=Path, default=Path("runs/benchmark-twins"), help="run directory, resumed")
     chosen = parser.parse_args(arguments)
-    run = RunDirectory(chosen.out, {"benchmark": "twins", "rows": chosen.rows}, TwinRecord)
+    with exclusive(chosen.out):
+        _report(RunDirectory(chosen.out, {"benchmark": "twins", "rows": chosen.rows}, TwinRecord), chosen)
+
+
+def _report(run: RunDirectory[TwinRecord], chosen: argparse.Namespace) -> None:
     print("| garments | n | IoU, mean | lowest | moved-part error, mean [mm] | failures |\n|---|---|---|---|---|---|")
     for name in SETS:
         rows = (chosen.data / f"{name}-train.jsonl").read_text("utf-8").splitlines()[chosen.rows == "odd" :: 2]

@@ -1,5 +1,6 @@
 """What is kept of runs on disk: typed records in append-only directories, with what they depend on."""
 
+from polyfold.logs._exclusive import exclusive
 from polyfold.logs._json_lines import JsonLines
 from polyfold.logs._records import EpisodeRecord, FoldRecord, KeyedRecord, RunRecord, StudyEpisodeRecord
 from polyfold.logs._run_directory import RunDirectory, read_episodes, read_run
@@ -12,6 +13,7 @@ __all__ = [
     "RunDirectory",
     "RunRecord",
     "StudyEpisodeRecord",
+    "exclusive",
     "read_episodes",
     "read_run",
 ]

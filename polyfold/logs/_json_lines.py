@@ -4,13 +4,26 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TypeVar
 
 from polyfold.errors import ConfigError
+from polyfold.logs._files import write_atomically
 
 _BLOCK = 65_536
+
+_Parsed = TypeVar("_Parsed")
+
+
+@dataclass(frozen=True)
+class Damage:
+    """A line that can't be read: its number, itself, and what is wrong with it."""
+
+    number: int
+    line: bytes
+    problem: str
 
 
 class JsonLines:
@@ -65,6 +78,32 @@ class JsonLines:
         if not isinstance(record, dict):
             raise ConfigError(f"{where} is no JSON object; correct or remove the line")
         return record
+
+    def sound(self, parse: Callable[[dict[str, Any], str], _Parsed]) -> tuple[list[_Parsed], list[Damage]]:
+        """The records that can be read, and the lines that can't.
+
+        Args:
+            parse: makes what is wanted of a record, told where it stands; raises ConfigError where it can't.
+        """
+        found, damaged = list[_Parsed](), list[Damage]()
+        for number, (line, _) in enumerate(self.lines(), 1):
+            try:
+                found.append(parse(self._record(line, number), f"{self.path}, line {number}"))
+            except ConfigError as error:
+                damaged.append(Damage(number, line, str(error)))
+        return found, damaged
+
+    def set_aside(self, damaged: Collection[Damage]) -> Path:
+        """Move lines into a file beside this one; returns its path. Only for a file that nobody else writes to."""
+        beside = self.path.with_name(f"{self.path.stem}.damaged{self.path.suffix}")
+        taken = {damage.number for damage in damaged}
+        kept = [line for number, (line, _) in enumerate(self.lines(), 1) if number not in taken]
+        with beside.open("ab") as file:
+            file.writelines(damage.line for damage in damaged)
+            file.flush()
+            os.fsync(file.fileno())
+        write_atomically(self.path, b"".join(kept))
+        return beside
 
     def lines(self, begin: int = 0, growing: bool = True) -> Iterator[tuple[bytes, int]]:
         """The lines as they stand, each with the byte it ends at, so that a reader can go on where it stopped.

@@ -1,13 +1,15 @@
 """Run directories: append-only, one finished episode a line, safe to kill at any moment and to resume.
 
 ``run.json`` says what the run is (:class:`RunRecord`); ``episodes.jsonl`` holds one finished episode a line, appended
-and flushed to disk. A last line that a kill cut in half is dropped when the directory is opened again.
+and flushed to disk. A last line that a kill cut in half is dropped when the directory is opened again. A line that is
+damaged is set aside, of which is warned, and its episode runs again.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -15,12 +17,12 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from polyfold.config import ComponentSpec
-from polyfold.errors import ConfigError, validation_problem
+from polyfold.errors import ConfigError, file_problem, validation_problem
 from polyfold.logs import _schema_1
 from polyfold.logs._files import write_atomically
 from polyfold.logs._fingerprint import Fingerprint
 from polyfold.logs._host import this_host
-from polyfold.logs._json_lines import JsonLines
+from polyfold.logs._json_lines import Damage, JsonLines
 from polyfold.logs._records import (
     SCHEMA_VERSION,
     ChangeRecord,
@@ -38,7 +40,7 @@ DESCRIPTION, EPISODES = "run.json", "episodes.jsonl"
 
 
 class RunDirectory(Generic[Record]):
-    """A directory of results that belong to one configuration.
+    """A directory of results that belong to one configuration, for its only writer (:func:`exclusive`).
 
     Args:
         path: the directory; created if needed.
@@ -48,9 +50,12 @@ class RunDirectory(Generic[Record]):
         metrics: how each metric is shown.
         criteria: bounds of each success criterion, the run's own first.
         components: by variant and field of its experiment, the components in use, their defaults included.
+        redescribe: take the directory for this configuration's although its description is damaged, which is kept
+            beside the new one.
 
     Raises:
-        ConfigError: if the directory belongs to another configuration or another schema version.
+        ConfigError: if the directory belongs to another configuration or another schema version, or lacks its
+            description.
     """
 
     def __init__(
@@ -62,6 +67,7 @@ class RunDirectory(Generic[Record]):
         metrics: Mapping[str, MetricRecord] | None = None,
         criteria: Mapping[str, tuple[Threshold, ...]] | None = None,
         components: Mapping[str, dict[str, ComponentSpec]] | None = None,
+        redescribe: bool = False,
     ) -> None:
         self.path = Path(path)
         self.path.mkdir(parents=True, exist_ok=True)
@@ -78,10 +84,16 @@ class RunDirectory(Generic[Record]):
             criteria=dict(criteria or {}),
         )
         if (self.path / DESCRIPTION).exists():
-            self.run = self._claimed()
+            self.run = self._claimed(redescribe)
+        elif (self.path / EPISODES).exists():
+            raise ConfigError(
+                f"{self.path} holds {EPISODES} but no {DESCRIPTION}, so that nobody can tell what made its episodes; "
+                f"put {DESCRIPTION} back, or use another directory"
+            )
         else:
             self._describe(self._now)
         self._lines.repair()
+        self._set_damage_aside()
         if self.run.asked != plain:
             self._replace()
 
@@ -98,14 +110,41 @@ class RunDirectory(Generic[Record]):
             )
         self._describe(self._now)
 
-    def _claimed(self) -> RunRecord:
-        schema = _content(self.path / DESCRIPTION).get("schema_version")
-        if schema == _schema_1.SCHEMA_VERSION:
-            raise ConfigError(
-                f"{self.path} holds a run of an older version, which can be read and no longer resumed; "
-                "use another directory"
-            )
-        return read_run(self.path)
+    def _set_damage_aside(self) -> None:
+        _, damaged = self._lines.sound(self._parse)
+        if damaged:
+            beside = self._lines.set_aside(damaged)
+            _warn_of(damaged, f"set aside in {beside.name}, and such an episode runs again")
+
+    def _parse(self, content: Mapping[str, Any], where: str) -> Record:
+        return _validated(self._record_type, content, where)
+
+    def _claimed(self, redescribe: bool) -> RunRecord:
+        try:
+            if _content(self.path / DESCRIPTION).get("schema_version") == _schema_1.SCHEMA_VERSION:
+                raise ConfigError(
+                    f"{self.path} holds a run of an older version, which can be read and no longer resumed; "
+                    "use another directory"
+                )
+            return read_run(self.path)
+        except _DamagedError as error:
+            if not redescribe:
+                raise
+            return self._described_anew(error)
+
+    def _described_anew(self, error: _DamagedError) -> RunRecord:
+        kept = self.path / "run.damaged.json"
+        (self.path / DESCRIPTION).replace(kept)
+        warnings.warn(f"{error.problem}: it is kept as {kept.name} and the run is described anew", stacklevel=4)
+        change = ChangeRecord(
+            when=datetime.now(UTC),
+            differences=(f"{DESCRIPTION} was damaged and was written anew",),
+            fingerprint=self._now.fingerprint or Fingerprint(),
+            components=self._now.components,
+            episodes=sum(1 for _ in self._lines.lines()),
+        )
+        self._describe(self._now.model_copy(update={"changes": (change,)}))
+        return self.run
 
     def _describe(self, run: RunRecord) -> None:
         self.run = run
@@ -159,7 +198,7 @@ class RunDirectory(Generic[Record]):
     def records(self) -> dict[str, Record]:
         """Finished episodes by key, the last of each, in the order in which their keys first finished."""
         found: dict[str, Record] = {}
-        for record in _read(self._lines, self._record_type):
+        for record in self._lines.sound(self._parse)[0]:
             found[record.key] = record
         return found
 
@@ -177,29 +216,43 @@ def read_run(path: str | Path) -> RunRecord:
             f"{description} has schema version {content.get('schema_version')}, this is {SCHEMA_VERSION}; "
             "use the polyfold version that made it, or another directory"
         )
-    return _validated(RunRecord, content, str(description))
+    try:
+        return RunRecord.model_validate(content)
+    except ValidationError as error:
+        raise _DamagedError(f"{description} {validation_problem(error)}") from error
 
 
 def read_episodes(path: str | Path) -> list[StudyEpisodeRecord]:
     """The finished episodes of a study's run directory, the last try of each.
 
-    The directory may be running still: a half-written last line is left out.
+    The directory may be running still: a half-written last line is left out. Damaged lines are, too, with a warning.
 
     Raises:
-        ConfigError: if there is no run directory, or a line is no record of an episode.
+        ConfigError: if there is no run directory.
     """
     read_run(path)
     lines = JsonLines(Path(path) / EPISODES)
-    if _content(Path(path) / DESCRIPTION)["schema_version"] == _schema_1.SCHEMA_VERSION:
-        records = [_schema_1.episode_record(line) for line in lines.read()]
-    else:
-        records = list(_read(lines, StudyEpisodeRecord))
+    old = _content(Path(path) / DESCRIPTION)["schema_version"] == _schema_1.SCHEMA_VERSION
+    records, damaged = lines.sound(_old_episode if old else _episode)
+    if damaged:
+        _warn_of(damaged, "left out; run the evaluation again to have such an episode anew")
     return list({record.key: record for record in records}.values())
 
 
-def _read(lines: JsonLines, record_type: type[Record]) -> Iterator[Record]:
-    for number, line in enumerate(lines.read(), 1):
-        yield _validated(record_type, line, f"{lines.path}, line {number}")
+def _episode(content: Mapping[str, Any], where: str) -> StudyEpisodeRecord:
+    return _validated(StudyEpisodeRecord, content, where)
+
+
+def _old_episode(content: Mapping[str, Any], where: str) -> StudyEpisodeRecord:
+    try:
+        return _schema_1.episode_record(content)
+    except (KeyError, TypeError, ValueError) as error:
+        raise ConfigError(f"{where} is no record of an episode ({error}); remove the line") from error
+
+
+def _warn_of(damaged: Sequence[Damage], done: str) -> None:
+    more = f" and {len(damaged) - 1} more" if len(damaged) > 1 else ""
+    warnings.warn(f"{damaged[0].problem}{more}: {done}", stacklevel=4)
 
 
 def _validated(model: type[Model], content: Mapping[str, Any], where: str) -> Model:
@@ -212,11 +265,28 @@ def _validated(model: type[Model], content: Mapping[str, Any], where: str) -> Mo
 def _content(description: Path) -> dict[str, Any]:
     try:
         content = json.loads(description.read_text("utf-8"))
-    except ValueError as error:
-        raise ConfigError(f"{description} is not JSON ({error}); restore it, or use another directory") from error
+    except OSError as error:
+        raise ConfigError(file_problem(error, description)) from error
+    except (ValueError, RecursionError) as error:
+        raise _DamagedError(f"{description} is not JSON ({error})") from error
     if not isinstance(content, dict):
-        raise ConfigError(f"{description} describes no run; restore it, or use another directory")
+        raise _DamagedError(f"{description} describes no run")
     return content
+
+
+class _DamagedError(ConfigError):
+    """The description of a run can't be read.
+
+    Attributes:
+        problem: why, without what to do.
+    """
+
+    def __init__(self, problem: str) -> None:
+        self.problem = problem
+        super().__init__(
+            f"{problem}; put it back, or run the same evaluation into it with --accept-change (accept_change=True), "
+            "which describes the run anew and keeps the damaged file"
+        )
 
 
 def _changes(old: Any, new: Any, place: str = "") -> Iterator[str]:

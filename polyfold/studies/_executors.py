@@ -71,16 +71,14 @@ def on_dask(
         address: of the scheduler of a running cluster.
 
     Raises:
-        ConfigError: if Dask is not installed.
+        ConfigError: as :func:`check_dask` does, or if the cluster is lost on the way.
     """
-    try:
-        from distributed import (  # pyright: ignore[reportMissingImports]  (an optional package)
-            Client,
-            LocalCluster,
-            as_completed,
-        )
-    except ModuleNotFoundError as error:
-        raise ConfigError("the engine 'dask' needs: pip install distributed") from error
+    from distributed import (  # pyright: ignore[reportMissingImports]  (an optional package)
+        Client,
+        LocalCluster,
+        as_completed,
+    )
+
     with _one_thread_each():
         cluster = None if address else LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
         with Client(address or cluster) as client:
@@ -94,6 +92,31 @@ def on_dask(
             finally:
                 if cluster is not None:
                     cluster.close()
+
+
+def check_dask(address: str | None) -> None:
+    """Find out whether there is a cluster to run on, before anything is written.
+
+    Raises:
+        ConfigError: if Dask is not installed, or nobody answers at the address.
+    """
+    try:
+        from distributed import Client  # pyright: ignore[reportMissingImports]  (an optional package)
+    except ModuleNotFoundError as error:
+        raise ConfigError("the engine 'dask' needs: pip install distributed") from error
+    if address is None:
+        return
+    try:
+        Client(address, timeout=_ANSWERS_WITHIN).close()
+    except (OSError, ValueError, TimeoutError) as error:
+        raise ConfigError(
+            f"no Dask scheduler answers at {address!r} ({error}); give its address, for example tcp://10.0.0.1:8786, "
+            "or leave it out to start a cluster here"
+        ) from error
+
+
+_ANSWERS_WITHIN = 10
+"""Seconds that a scheduler has to answer."""
 
 
 def _one_thread_each() -> AbstractContextManager[Any]:

@@ -15,16 +15,17 @@ from pathlib import Path
 from polyfold import plugins
 from polyfold.errors import ConfigError
 from polyfold.evaluation._criteria import criteria
-from polyfold.logs import RunDirectory, StudyEpisodeRecord
+from polyfold.logs import RunDirectory, StudyEpisodeRecord, exclusive
 from polyfold.logs._components import components_in_use
 from polyfold.logs._dependencies import fingerprint
 from polyfold.logs._files import picture_path, write_atomically
 from polyfold.logs._fingerprint import Fingerprint
 from polyfold.logs._records import MetricRecord
+from polyfold.plugins.hookspecs import plural
 from polyfold.plugins.interfaces import LabelledMetric, Metric, RoundedMetric
 from polyfold.studies._cell import PICTURES, Render, Scored, evaluate_cell
 from polyfold.studies._cells import Cell, cells
-from polyfold.studies._executors import in_processes, on_dask
+from polyfold.studies._executors import check_dask, in_processes, on_dask
 from polyfold.studies._study import Study, experiment_of
 from polyfold.types import Threshold
 
@@ -54,10 +55,39 @@ def evaluate(
         raise ConfigError(f"there are no pictures {pictures!r}; choose one of {', '.join(PICTURES)}")
     if workers < 1:
         raise ConfigError(f"there are no {workers} workers; give 1 or more")
+    if engine == "dask":
+        check_dask(address)
     wanted = list(cells(study))
-    kinds = sorted({cell.garment for cell in wanted})
+    with exclusive(out):
+        run = _opened(study, sorted({cell.garment for cell in wanted}), out, accept_change)
+        done = {key: record for key, record in run.records().items() if not record.unanswered}
+        missing = [cell for cell in wanted if cell.key not in done]
+        if missing:
+            run.guard(accept_change)
+            _check_language_models(study, missing)
+            if workers > 1 or engine == "dask":
+                _check_portable(study, missing)
+        plugins.notify("on_study_start", study=study)
+        job = partial(evaluate_cell, study, pictures=pictures, render=render)
+        dask = missing and engine == "dask"
+        results = on_dask(job, missing, workers, address) if dask else in_processes(job, missing, workers)
+        try:
+            with closing(results):
+                shown = _with_progress(results, len(wanted), list(done.values()), progress and bool(missing))
+                for cell, (record, picture) in shown:
+                    run.append(_with_picture(run.path, cell, record, picture))
+        finally:
+            finished = run.records()
+            plugins.notify("on_study_end", study=study, finished=sum(cell.key in finished for cell in wanted))
+        return [finished[cell.key] for cell in wanted]
+
+
+def _opened(
+    study: Study, kinds: Sequence[str], out: str | Path, accept_change: bool
+) -> RunDirectory[StudyEpisodeRecord]:
+    """The study's run directory, described if it is new."""
     bounds = criteria(study.criteria)
-    run = RunDirectory(
+    return RunDirectory(
         out,
         {"study": study.model_dump(mode="json")},
         StudyEpisodeRecord,
@@ -65,27 +95,8 @@ def evaluate(
         metric_records(bounds[study.criteria[0]]),
         bounds,
         {variant: components_in_use(experiment_of(study, variant), kinds) for variant in study.variants},
+        redescribe=accept_change,
     )
-    done = {key: record for key, record in run.records().items() if not record.unanswered}
-    missing = [cell for cell in wanted if cell.key not in done]
-    if missing:
-        run.guard(accept_change)
-        _check_language_models(study, missing)
-        if workers > 1 or engine == "dask":
-            _check_portable()
-    plugins.notify("on_study_start", study=study)
-    job = partial(evaluate_cell, study, pictures=pictures, render=render)
-    dask = missing and engine == "dask"
-    results = on_dask(job, missing, workers, address) if dask else in_processes(job, missing, workers)
-    try:
-        with closing(results):
-            shown = _with_progress(results, len(wanted), list(done.values()), progress and bool(missing))
-            for cell, (record, picture) in shown:
-                run.append(_with_picture(run.path, cell, record, picture))
-    finally:
-        finished = run.records()
-        plugins.notify("on_study_end", study=study, finished=sum(cell.key in finished for cell in wanted))
-    return [finished[cell.key] for cell in wanted]
 
 
 def study_fingerprint(study: Study, garment_kinds: Iterable[str]) -> Fingerprint:
@@ -148,12 +159,25 @@ def _check_language_models(study: Study, missing: Sequence[Cell]) -> None:
             plugins.create_chosen(experiment, "llm")
 
 
-def _check_portable() -> None:
-    """Refuse components that a worker could not import."""
+def _check_portable(study: Study, missing: Sequence[Cell]) -> None:
+    """Refuse components in use that a worker could not import."""
     portable = {(kind, name) for kind, name, _ in plugins.portable()}
+    used = _names_in_use(study, missing)
     for kind, name in plugins.by_hand():
-        if (kind, name) not in portable:
+        if (kind, name) in used and (kind, name) not in portable:
             raise ConfigError(
                 f"{name!r} was registered from a notebook or script and can't reach worker processes; "
                 "put its class into a module that can be imported, or run with workers=1"
             )
+
+
+def _names_in_use(study: Study, missing: Sequence[Cell]) -> set[tuple[str, str]]:
+    """(kind, name) of the components that the missing episodes take, those of every episode included."""
+    used = {("metrics", name) for name in plugins.names("metrics")}
+    used |= {("criteria", name) for name in study.criteria} | {("tasks", study.suite), ("agents", "oracle")}
+    kinds = sorted({cell.garment for cell in missing})
+    used |= {("garments", kind) for kind in kinds}
+    for variant in dict.fromkeys(cell.variant for cell in missing):
+        for field, spec in components_in_use(experiment_of(study, variant), kinds).items():
+            used.add((plural(field.partition(" of ")[0]), spec.name.partition(":")[0]))
+    return used

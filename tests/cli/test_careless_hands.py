@@ -3,6 +3,7 @@
 import argparse
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -136,7 +137,7 @@ def test_invisible_characters_are_left_out_and_said(polyfold):
 
 
 def test_a_full_disk_is_said_once():
-    with open("/dev/full", "w") as full:
+    with Path("/dev/full").open("w") as full:
         child = subprocess.run([sys.executable, "-m", "polyfold", "tasks"], stdout=full, stderr=subprocess.PIPE)
     assert child.returncode == 1
     assert child.stderr.decode().count("\n") == 1

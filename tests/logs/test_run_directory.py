@@ -111,3 +111,48 @@ def test_a_run_without_an_episode_takes_what_there_is_now(tmp_path):
     run.guard()
     assert read_run(tmp_path).fingerprint == AFTER
     assert read_run(tmp_path).changes == ()
+
+
+def damaged(path, number):
+    """Flip a byte of a line of a file."""
+    lines = path.read_bytes().splitlines(keepends=True)
+    lines[number] = b"\xff" + lines[number][1:]
+    path.write_bytes(b"".join(lines))
+
+
+def test_a_damaged_line_is_set_aside_and_its_episode_missing(tmp_path):
+    run = RunDirectory(tmp_path, {"a": 1}, Score)
+    for key in ("one", "two", "three"):
+        run.append(Score(key=key, score=1.0))
+    damaged(tmp_path / "episodes.jsonl", 1)
+    with (tmp_path / "episodes.jsonl").open("a") as file:
+        file.write('{"key": "four", "score": "many"}\n')
+    with pytest.warns(UserWarning, match=r"line 2 is not JSON.*and 1 more.*episodes\.damaged\.jsonl"):
+        again = RunDirectory(tmp_path, {"a": 1}, Score)
+    assert list(again.records()) == ["one", "three"]
+    assert (tmp_path / "episodes.damaged.jsonl").read_bytes().count(b"\n") == 2
+    again.append(Score(key="two", score=2.0))
+    assert list(RunDirectory(tmp_path, {"a": 1}, Score).records()) == ["one", "three", "two"]
+
+
+def test_a_damaged_description_says_how_to_go_on(tmp_path):
+    RunDirectory(tmp_path, {"a": 1}, Score).append(Score(key="one", score=1.0))
+    damaged(tmp_path / "run.json", 0)
+    with pytest.raises(ConfigError, match=r"run\.json is not JSON.*--accept-change"):
+        RunDirectory(tmp_path, {"a": 1}, Score)
+    with pytest.raises(ConfigError, match=r"run\.json is not JSON.*--accept-change"):
+        read_run(tmp_path)
+    with pytest.warns(UserWarning, match=r"run\.damaged\.json"):
+        again = RunDirectory(tmp_path, {"a": 1}, Score, redescribe=True)
+    assert list(again.records()) == ["one"]
+    (change,) = read_run(tmp_path).changes
+    assert "damaged" in change.differences[0]
+    assert (tmp_path / "run.damaged.json").read_bytes().startswith(b"\xff")
+
+
+def test_episodes_without_a_description_are_not_taken_over(tmp_path):
+    RunDirectory(tmp_path, {"a": 1}, Score).append(Score(key="one", score=1.0))
+    (tmp_path / "run.json").unlink()
+    with pytest.raises(ConfigError, match="put run.json back"):
+        RunDirectory(tmp_path, {"a": 1}, Score)
+    assert not (tmp_path / "run.json").exists()

@@ -122,7 +122,7 @@ def test_killed_at_any_moment_it_goes_on_without_loss_or_repetition(tmp_path):
     assert untimed(resumed) == untimed(undisturbed)
 
 
-def test_a_component_of_a_notebook_is_refused_by_workers_with_the_reason(tmp_path):
+def test_a_component_of_a_notebook_is_refused_by_workers_that_need_it_with_the_reason(tmp_path):
     class Local:
         def act(self, fold_line, scene, rng):
             raise NotImplementedError
@@ -130,7 +130,9 @@ def test_a_component_of_a_notebook_is_refused_by_workers_with_the_reason(tmp_pat
     polyfold.register("policies", "local", Local)
     try:
         with pytest.raises(ConfigError, match="can't reach worker processes"):
-            evaluate(polyfold.Study(**SMALL), tmp_path, workers=2, progress=False)
+            evaluate(polyfold.Study(**SMALL, base={"policy": "local"}), tmp_path / "used", workers=2, progress=False)
+        unused = polyfold.Study(**{**SMALL, "garments": 1}, base={"agent": "noop"})
+        assert len(evaluate(unused, tmp_path / "unused", workers=2, progress=False)) == 4
     finally:
         polyfold.plugins.unregister("policies", "local")
 

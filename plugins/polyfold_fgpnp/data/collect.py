@@ -81,11 +81,12 @@ def collect(
 
     Raises:
         PluginError: if there is no such kind of garment, fabric, simulator or segmenter.
-        ConfigError: if the folder holds a data set with other parameters or changed shards, the weights do not serve,
-            or not even one fold or process is asked for.
+        ConfigError: if the folder holds a data set with other parameters or changed shards or is in use, the weights do
+            not serve, or not even one fold or process is asked for.
     """
     from tqdm import tqdm
 
+    from polyfold.logs import exclusive
     from polyfold.studies import in_processes
     from polyfold_fgpnp.data.dataset import DatasetFolder
     from polyfold_fgpnp.data.interaction import check, explore, trials_per_job
@@ -93,16 +94,18 @@ def collect(
     if folds < 1 or workers < 1:
         raise ConfigError(f"{folds} folds by {workers} processes can't be collected; give 1 or more of each")
     check(interaction)
-    folder = DatasetFolder(out, interaction.model_dump(mode="json"))
     each = trials_per_job(interaction.mix)
     total = -(-folds // each)
-    done = folder.jobs()
-    missing = [job for job in range(total) if job not in done]
-    with tqdm(total=total * each, initial=(total - len(missing)) * each, unit="fold", disable=not progress) as bar:
-        for job, arrays in in_processes(partial(explore, interaction), missing, workers):
-            folder.write(job, arrays)
-            bar.update(each)
-    return folder.finish()
+    with exclusive(out):
+        folder = DatasetFolder(out, interaction.model_dump(mode="json"))
+        folder.set_damage_aside()
+        done = folder.jobs()
+        missing = [job for job in range(total) if job not in done]
+        with tqdm(total=total * each, initial=(total - len(missing)) * each, unit="fold", disable=not progress) as bar:
+            for job, arrays in in_processes(partial(explore, interaction), missing, workers):
+                folder.write(job, arrays)
+                bar.update(each)
+        return folder.finish()
 
 
 def _interaction(arguments: argparse.Namespace) -> Interaction:

@@ -21,6 +21,9 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import warnings
+import zipfile
+import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -67,6 +70,16 @@ class DatasetFolder:
     def jobs(self) -> set[int]:
         """Jobs whose shards are there."""
         return {int(path.stem) for path in (self.path / "shards").glob("*.npz")}
+
+    def set_damage_aside(self) -> None:
+        """Put shards that can't be read beside the others, with a warning, so that their jobs run again."""
+        for file in sorted((self.path / "shards").glob("*.npz")):
+            try:
+                _shard(file)
+            except ConfigError as error:
+                beside = file.with_suffix(".damaged")
+                file.replace(beside)
+                warnings.warn(f"{error}; it is kept as {beside.name} and collected again", stacklevel=3)
 
     def write(self, job: int, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write a job's shard; a data set that was finished is being extended then, and no longer complete.
@@ -208,7 +221,13 @@ def _read_description(path: Path) -> Description:
     file = path / "dataset.json"
     if not file.exists():
         raise ConfigError(f"there is no data set in {path}; make one with: polyfold collect --out {path}")
-    description = json.loads(file.read_text("utf-8"))
+    try:
+        description = json.loads(file.read_text("utf-8"))
+        description.get("schema_version")
+    except (ValueError, AttributeError) as error:
+        raise ConfigError(
+            f"{file} is damaged ({error}); remove it and collect with the same options again, which keeps the shards"
+        ) from error
     if description.get("schema_version") == 1:
         return _from_schema_1(description)
     if description.get("schema_version") != SCHEMA:
@@ -228,13 +247,26 @@ def _from_schema_1(description: Description) -> Description:
 
 
 def _changed(path: Path) -> ConfigError:
-    return ConfigError(f"shards in {path} have changed since it was finished; collect into another folder")
+    return ConfigError(
+        f"shards in {path} have changed since it was finished; collect with the same options again, "
+        "which makes damaged ones anew, or into another folder"
+    )
 
 
 def _shards(path: Path) -> Iterator[dict[str, NDArray[Any]]]:
     for file in sorted((path / "shards").glob("*.npz")):
+        try:
+            yield _shard(file)
+        except ConfigError as error:
+            raise ConfigError(f"{error}; collect with the same options again, which makes it anew") from error
+
+
+def _shard(file: Path) -> dict[str, NDArray[Any]]:
+    try:
         with np.load(file, allow_pickle=False) as shard:
-            yield dict(shard)
+            return dict(shard)
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise ConfigError(f"{file} is damaged ({error})") from error
 
 
 def _hash(path: Path) -> str:

@@ -119,13 +119,16 @@ class Learner:
 
     def resume(self, path: Path) -> int:
         """Go on from a checkpoint if there is one; returns how many epochs are done."""
-        from safetensors import safe_open
+        from safetensors import SafetensorError, safe_open
 
         if not path.exists():
             return 0
-        with safe_open(path, "pt") as stream:
-            epoch = int(stream.metadata()["epoch"])
-            tensors = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118
+        try:
+            with safe_open(path, "pt") as stream:
+                epoch = int(stream.metadata()["epoch"])
+                tensors = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118
+        except (SafetensorError, KeyError, TypeError, ValueError) as error:
+            raise ConfigError(f"{path} is damaged ({error}); remove it to train from the beginning") from error
         self.network.load_state_dict(_under("network.", tensors))
         state: dict[int, dict[str, Tensor]] = {}
         for name, tensor in _under("optimizer.", tensors).items():

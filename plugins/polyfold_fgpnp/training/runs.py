@@ -54,7 +54,10 @@ def read_run(path: str | Path) -> TrainingRun:
     note, log = path / "training.json", JsonLines(path / METRICS)
     if not note.exists():
         raise ConfigError(f"{path} holds no training; give the --out of `polyfold train`")
-    config = json.loads(note.read_text("utf-8"))["config"]
+    try:
+        config = json.loads(note.read_text("utf-8"))["config"]
+    except (ValueError, KeyError, TypeError) as error:
+        raise ConfigError(f"{note} is damaged ({error}); train with the same file into another folder") from error
     return TrainingRun(path, config, log.read(), sum(_folds(data, config["folds"]) for data in config["data"]))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import numpy as np
 import torch
 
 from polyfold.errors import ConfigError
-from polyfold_fgpnp.data.dataset import load_dataset
+from polyfold.logs import exclusive
+from polyfold_fgpnp.data.dataset import Dataset, load_dataset
 from polyfold_fgpnp.policies.weights import Provenance, save_weights
 from polyfold_fgpnp.training.config import TrainingConfig
 from polyfold_fgpnp.training.examples import Examples, make_examples
@@ -30,22 +32,35 @@ def train(config: TrainingConfig, out: str | Path, device: str = "auto", progres
         progress: show a progress bar.
 
     Raises:
-        ConfigError: if the folder holds another training, data or the device is missing, or the network has collapsed.
+        ConfigError: if the folder holds another training or is in use, data or the device is missing, or the network
+            has collapsed.
     """
-    from tqdm import tqdm
-
     out = Path(out)
     target = _device(device)
     sets = [load_dataset(path) for path in config.data]
     hashes = tuple(data.description["hash"] for data in sets)
     note = json.dumps({"config": config.plain(), "data": hashes}, indent=2) + "\n"
     _refuse_another(out, note)
+    with exclusive(out):
+        return _trained(config, out, target, sets, hashes, note, progress)
+
+
+def _trained(
+    config: TrainingConfig,
+    out: Path,
+    target: torch.device,
+    sets: Sequence[Dataset],
+    hashes: tuple[str, ...],
+    note: str,
+    progress: bool,
+) -> Path:
+    from tqdm import tqdm
+
     examples = make_examples(
         sets, config.network.variant, config.network.frame, config.reward, config.scale, config.folds
     )
     learned, validation = _split(examples, config.held_out)
     run = Learner(config, learned, target)
-    out.mkdir(parents=True, exist_ok=True)
     (out / "training.json").write_text(note, "utf-8")
     first = run.resume(out / "checkpoint.safetensors")
     provenance = Provenance(config.plain(), hashes, run.mean, run.deviation)

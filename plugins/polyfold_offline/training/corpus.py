@@ -47,7 +47,9 @@ def read_corpus(folder: Path) -> list[Example]:
             if example is not None:
                 found.append(example)
     if not found:
-        raise ConfigError(f"{folder} holds no sentences (*.jsonl); give a folder such as experiments/language/sentences/train")
+        raise ConfigError(
+            f"{folder} holds no sentences (*.jsonl); give a folder such as experiments/language/sentences/train"
+        )
     return found
 
 

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import torch
 
+from polyfold.errors import ConfigError
+from polyfold.logs import exclusive
 from polyfold_offline.reading.pieces import Pieces
 from polyfold_offline.reading.text import words_of
 from polyfold_offline.training.batches import Batches
@@ -110,14 +112,17 @@ class Learner:
 
     def resume(self, path: Path) -> None:
         """Go on from a checkpoint, if there is one."""
-        from safetensors import safe_open
+        from safetensors import SafetensorError, safe_open
 
         if not path.exists():
             return
         state: dict[int, dict[str, Any]] = {}
-        with safe_open(path, "pt") as file:
-            self.step = int(file.metadata()["step"])
-            told = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 - it is no dictionary
+        try:
+            with safe_open(path, "pt") as file:
+                self.step = int(file.metadata()["step"])
+                told = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 - it is no dictionary
+        except (SafetensorError, KeyError, TypeError, ValueError) as error:
+            raise ConfigError(f"{path} is damaged ({error}); remove it to learn from the beginning") from error
         self.network.load_state_dict(_under("network.", told))
         self.average = _under("average.", told)
         for name, tensor in told.items():
@@ -180,11 +185,17 @@ def train_reader(sentences: Path, out: Path, encoder: Path | None, plan: Schedul
     Returns:
         The file of the weights.
     """
-    from polyfold_offline.training.weights import export, pretrained_encoder
+    from polyfold_offline.training.weights import pretrained_encoder
 
     examples = read_corpus(sentences)
     tensors = pretrained_encoder(encoder)
-    out.mkdir(parents=True, exist_ok=True)
+    with exclusive(out):
+        return _trained(examples, tensors, out, plan)
+
+
+def _trained(examples: Sequence[Example], tensors: Mapping[str, torch.Tensor], out: Path, plan: Schedule) -> Path:
+    from polyfold_offline.training.weights import export
+
     (out / "words.json").write_text(json.dumps(frequent_words(examples), ensure_ascii=False), encoding="utf-8")
     (out / "pieces.json").write_bytes((FOLDER / "pieces.json").read_bytes())
     pieces = Pieces.load(out)
