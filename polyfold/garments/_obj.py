@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ from numpy.typing import NDArray
 from polyfold.errors import GarmentError, file_problem
 from polyfold.garments._flatten import flatten, front_faces
 from polyfold.garments._garment import Garment
+from polyfold.garments._obj_file import ObjFile, read_obj, welded
 from polyfold.garments._pattern import Pattern
 from polyfold.garments._twin import twin_from_outline
 
@@ -25,8 +28,11 @@ DISTORTION = 0.15
 FLIPPED = 0.05
 """Largest accepted share of the surface that turns over when it is flattened."""
 
-PLAUSIBLE = (0.1, 2.5)
-"""Longest side [m] of a mesh that is taken to be in metres."""
+USUAL = (0.55, 4.0)
+"""Longest sides of a mesh that is taken to be in metres, as multiples of what is typical of the kind."""
+
+LONGEST = 2.5
+"""The longest of those [m]."""
 
 
 def load_obj(
@@ -56,10 +62,10 @@ def load_obj(
         GarmentError: if the mesh is unusable, a keypoint is missing or unknown, or the mesh does not lie flat.
     """
     path = Path(path)
-    file_vertices = _file_vertices(path)
-    indices = _keypoint_indices(Path(keypoints_json), pattern, len(file_vertices))
-    vertices, faces = _read_mesh(path)
-    corners = _nearest(vertices, file_vertices[list(indices.values())])
+    surface, unit = _of_unit_size(read_obj(path), path)
+    indices = _keypoint_indices(Path(keypoints_json), pattern, surface.listed)
+    vertices, faces = _sound_mesh(surface, path)
+    corners = _nearest(vertices, surface.vertices[list(indices.values())])
     places = dict(zip(indices, corners, strict=True))
     right, up, viewer = _frame({name: vertices[vertex] for name, vertex in places.items()}, pattern, path)
     front = front_faces(vertices, faces, viewer) if pattern.layers == 2 else np.ones(len(faces), bool)
@@ -67,35 +73,28 @@ def load_obj(
         raise GarmentError(f"{path} has no back; a {kind} needs a closed body with openings")
     flat = flatten(vertices, faces, front, right, up)
     _check_flat(flat.distortion, flat.flipped, path)
-    size = _size(flat.points, size_m, path)
+    size = _size(unit * float(np.ptp(flat.points, axis=0).max()), size_m, kind, pattern, path)
     pixels = flat.points * np.array([1.0, -1.0])
     outline = _silhouette(pixels, faces)
     keypoints = {name: pixels[vertex] for name, vertex in places.items()}
     return twin_from_outline(outline, kind, keypoints, pattern, size, edge_length, name=path.stem)
 
 
-def _file_vertices(path: Path) -> Floats:
-    """Positions in the order of the file's ``v`` lines, which keypoints refer to, shape (V, 3)."""
-    try:
-        lines = path.read_text("utf-8", errors="replace").splitlines()
-        rows = [[float(value) for value in line.split()[1:4]] for line in lines if line.startswith("v ")]
-        vertices = np.array(rows, float).reshape(-1, 3)
-    except OSError as error:
-        raise GarmentError(file_problem(error, path)) from error
-    except ValueError as error:
-        raise GarmentError(f"the mesh {path} has a broken vertex line ({error}); export it again") from error
-    if not len(vertices) or not np.isfinite(vertices).all():
-        raise GarmentError(f"{path} holds no finite vertices; give a triangle mesh in OBJ format")
-    return vertices
+def _of_unit_size(surface: ObjFile, path: Path) -> tuple[ObjFile, float]:
+    """The surface with its longest side scaled to 1, since a library's tolerances suit that; and how long that was."""
+    unit = float(np.ptp(surface.vertices, axis=0).max())
+    if unit <= 0:
+        raise GarmentError(f"all vertices of {path} lie in one place; export it again")
+    return replace(surface, vertices=(surface.vertices - surface.vertices.mean(0)) / unit), unit
 
 
 def _keypoint_indices(path: Path, pattern: Pattern, count: int) -> dict[str, int]:
     try:
-        content: Any = json.loads(path.read_text("utf-8"))
+        content: Any = json.loads(path.read_text("utf-8-sig"))
     except OSError as error:
         raise GarmentError(file_problem(error, path)) from error
     except (ValueError, RecursionError) as error:
-        raise GarmentError(f"the keypoints {path} are no JSON ({error}); write an object name -> vertex") from error
+        raise GarmentError(f"the keypoints {path} are no JSON ({error}); write a JSON object name -> vertex") from error
     if not isinstance(content, Mapping) or not content:
         raise GarmentError(f"{path} holds no keypoints; write a JSON object name -> vertex index")
     missing = [name for name in pattern.corners if name not in content]
@@ -110,25 +109,24 @@ def _keypoint_indices(path: Path, pattern: Pattern, count: int) -> dict[str, int
             raise GarmentError(
                 f"the keypoint {name} in {path} is no vertex of the mesh: {index!r}; use 0 to {count - 1}"
             )
+    shared = [name for name, index in content.items() if list(content.values()).count(index) > 1]
+    if shared:
+        raise GarmentError(f"the keypoints {', '.join(shared)} in {path} name one vertex; give each its own")
     return {name: content[name] for name in pattern.corners}
 
 
-def _read_mesh(path: Path) -> tuple[Floats, Faces]:
+def _sound_mesh(surface: ObjFile, path: Path) -> tuple[Floats, Faces]:
     """Vertices and consistently wound faces of one connected manifold."""
     import trimesh
 
-    try:
-        mesh: Any = trimesh.load(path, force="mesh", process=False, maintain_order=True)
-        faces = getattr(mesh, "faces", np.empty((0, 3), int))
-    except Exception as error:  # trimesh raises whatever its parsers stumble over
-        raise GarmentError(f"the mesh {path} can't be read ({error}); export it again as OBJ") from error
-    if not len(faces):
-        raise GarmentError(f"{path} has no faces; export it as a surface, not as points")
-    if mesh.body_count > 1:
-        # Some exporters repeat vertices along texture seams. In one piece, vertices in one place are front and back.
-        mesh.merge_vertices(merge_tex=True, merge_norm=True)
-    mesh.update_faces(mesh.nondegenerate_faces())
-    mesh.update_faces(mesh.unique_faces())
+    mesh = _cleaned(surface)
+    if len(_large_pieces(mesh)) > 1:
+        # In one piece, vertices in one place are front and back; of several, they are seams that were cut open.
+        surface, count, gap = welded(surface)
+        mesh = _cleaned(surface)
+        if gap > 0:
+            joined = f"{count} vertices along seams are joined with others up to {gap:.1e} of its size away"
+            warnings.warn(f"{path}: {joined}", stacklevel=4)
     _, owners = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
     if (owners > 2).any():
         raise GarmentError(
@@ -140,10 +138,26 @@ def _read_mesh(path: Path) -> tuple[Floats, Faces]:
     return np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)
 
 
-def _largest_piece(mesh: Any, path: Path) -> Any:
-    """The mesh without loose scraps such as buttons."""
+def _cleaned(surface: ObjFile) -> Any:
+    import trimesh
+
+    mesh: Any = trimesh.Trimesh(surface.vertices, surface.faces, process=False)
+    mesh.update_faces(mesh.nondegenerate_faces())
+    mesh.update_faces(mesh.unique_faces())
+    return mesh
+
+
+def _large_pieces(mesh: Any) -> list[Any]:
+    """The pieces of a mesh without loose scraps such as buttons, the largest first."""
     pieces = sorted(mesh.split(only_watertight=False), key=lambda piece: -piece.area)
-    if len(pieces) > 1 and pieces[1].area > 0.05 * pieces[0].area:
+    return [piece for piece in pieces if piece.area > 0.05 * pieces[0].area]
+
+
+def _largest_piece(mesh: Any, path: Path) -> Any:
+    pieces = _large_pieces(mesh)
+    if not pieces:
+        raise GarmentError(f"the faces of {path} have no area; export it again as a surface")
+    if len(pieces) > 1:
         raise GarmentError(f"{path} consists of {len(pieces)} separate pieces; join them, or keep one garment per file")
     piece = pieces[0]
     piece.remove_unreferenced_vertices()
@@ -181,12 +195,15 @@ def _check_flat(distortion: Floats, flipped: float, path: Path) -> None:
         )
 
 
-def _size(points: Floats, size_m: float | None, path: Path) -> float:
+def _size(size: float, size_m: float | None, kind: str, pattern: Pattern, path: Path) -> float:
     if size_m is not None:
         return size_m
-    size = float(np.ptp(points, axis=0).max())
-    if not PLAUSIBLE[0] <= size <= PLAUSIBLE[1]:
-        raise GarmentError(f"{path} is {size:.3g} units long, which are hardly metres; give its longest side in metres")
+    shortest, longest = USUAL[0] * pattern.size, min(USUAL[1] * pattern.size, LONGEST)
+    if not shortest <= size <= longest:
+        raise GarmentError(
+            f"{path} is {size:.3g} units long; in metres, a {kind} is {shortest:.2g} to {longest:.2g} m long; "
+            "give its longest side in metres (--size)"
+        )
     return size
 
 

@@ -143,7 +143,7 @@ def test_meshes_that_cannot_be_used_are_refused(files, tmp_path):
         files[0].write_text(text)
         with pytest.raises(GarmentError, match=words):
             load_obj(*files, "pants", pattern("pants"))
-    with pytest.raises(GarmentError, match="give an OBJ file"):
+    with pytest.raises(GarmentError, match=r"there is no file .*absent\.obj"):
         load_obj(tmp_path / "absent.obj", files[1], "pants", pattern("pants"))
 
 
@@ -168,3 +168,122 @@ def test_keypoints_must_be_an_object(files):
         files[1].write_text(text)
         with pytest.raises(GarmentError, match="JSON object"):
             load_obj(*files, "pants", pattern("pants"))
+
+
+def flat_towel(tmp_path, write):
+    """A flat towel that a function writes; returns its garment, and the one that was read."""
+    garment = KINDS["rectangle"].generate(2002, 0.02)
+    positions = np.column_stack([garment.mesh.vertices, np.zeros(len(garment.mesh.vertices))])
+    keypoints = write(tmp_path / "towel.obj", positions, garment)
+    (tmp_path / "keypoints.json").write_text(json.dumps(keypoints or garment.keypoints))
+    files = (tmp_path / "towel.obj", tmp_path / "keypoints.json")
+    return garment, load_obj(*files, "rectangle", pattern("rectangle"), edge_length=0.02)
+
+
+def test_files_as_other_programs_write_them_are_read(tmp_path):
+    def write(path, positions, garment):
+        lines = [
+            "\ufeff# made elsewhere",
+            "o towel",
+            *(f"\tv\t{x:.6f}\t{y:.6f} {z:.6f} # here" for x, y, z in positions),
+        ]
+        count = len(positions)
+        lines += [f"  f {a - count} {b - count}/1 \\\n {c - count}/1/1" for a, b, c in garment.mesh.triangles]
+        path.write_text("\r\n".join(lines), "utf-8")
+
+    garment, loaded = flat_towel(tmp_path, write)
+    np.testing.assert_allclose(np.ptp(loaded.mesh.vertices, axis=0), np.ptp(garment.mesh.vertices, axis=0), rtol=0.02)
+
+
+@pytest.mark.parametrize("kind", ["tshirt", "pants"])
+@pytest.mark.parametrize("seed", [2001, 2002, 2003, 2004])
+def test_panels_that_are_one_concave_polygon_each_keep_their_keypoints(tmp_path, kind, seed):
+    garment = KINDS[kind].generate(seed, 0.02)
+    rim = outer_rim(garment.mesh)
+    sewn = {place for place, vertex in enumerate(rim) if garment.mesh.seam[vertex]}
+    lines = [f"v {x:.6f} {y:.6f} 0.002" for x, y in garment.mesh.vertices[rim]]
+    back = list[int]()
+    for place, (x, y) in enumerate(garment.mesh.vertices[rim]):
+        if place not in sewn:
+            lines.append(f"v {x:.6f} {y:.6f} -0.002")
+        back.append(place + 1 if place in sewn else len(lines))
+    lines.append(" ".join(["f", *map(str, range(1, len(rim) + 1))]))
+    lines.append(" ".join(["f", *map(str, reversed(back))]))
+    (tmp_path / "garment.obj").write_text("\n".join(lines))
+    places = {vertex: place for place, vertex in enumerate(rim)}
+    keypoints = {name: places[vertex] for name, vertex in garment.keypoints.items()}
+    (tmp_path / "keypoints.json").write_text(json.dumps(keypoints))
+    loaded = load_obj(tmp_path / "garment.obj", tmp_path / "keypoints.json", kind, pattern(kind), edge_length=0.02)
+    off = [
+        loaded.mesh.vertices[loaded.keypoints[name]] - garment.mesh.vertices[vertex]
+        for name, vertex in garment.keypoints.items()
+    ]
+    assert np.linalg.norm(off - np.mean(off, axis=0), axis=1).max() < 0.005
+
+
+def outer_rim(mesh):
+    """The vertices around the front panel, in order."""
+    t = mesh.triangles[mesh.panel == 1]
+    directed = np.vstack([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]])
+    pairs = {(int(a), int(b)) for a, b in directed}
+    follows = {a: b for a, b in pairs if (b, a) not in pairs}
+    rim = [next(iter(follows))]
+    while follows[rim[-1]] != rim[0]:
+        rim.append(follows[rim[-1]])
+    return rim
+
+
+def test_seams_that_nearly_meet_are_welded_with_a_word(files, garment):
+    mesh, positions = garment.mesh, worn_pants(garment)
+    lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in positions]
+    copies = {vertex: len(lines) + k for k, vertex in enumerate(np.flatnonzero(mesh.seam))}
+    lines += [f"v {x:.6f} {y:.6f} {z - 1e-4:.6f}" for x, y, z in positions[list(copies)]]
+    for face, panel in zip(mesh.triangles, mesh.panel, strict=True):
+        a, b, c = (copies.get(vertex, vertex) + 1 if panel == 1 else vertex + 1 for vertex in face)
+        lines.append(f"f {a} {b} {c}" if panel == 1 else f"f {a} {c} {b}")
+    files[0].write_text("\n".join(lines))
+    with pytest.warns(UserWarning, match="vertices along seams are joined"):
+        loaded = load_obj(*files, "pants", pattern("pants"), edge_length=0.02)
+    assert rims(loaded.mesh) == 3
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("f 0 1 2", r"line \d+: a face names vertex 0; vertices count from 1"),
+        ("f 1 2 99999", "names vertex 99999 of"),
+        ("f 1 2", "needs three corners"),
+        ("f 1 2 x", "names vertices, not 'x'"),
+        ("v 1 2", "broken vertex line"),
+    ],
+)
+def test_a_broken_line_is_named(files, line, says):
+    files[0].write_text(files[0].read_text() + line + "\n")
+    with pytest.raises(GarmentError, match=says):
+        load_obj(*files, "pants", pattern("pants"))
+
+
+def test_keypoints_on_one_vertex_are_refused(files, garment):
+    files[1].write_text(json.dumps(dict.fromkeys(garment.keypoints, 5)))
+    with pytest.raises(GarmentError, match="name one vertex"):
+        load_obj(*files, "pants", pattern("pants"))
+
+
+@pytest.mark.parametrize("factor", [1e-7, 0.12, 0.3, 100])
+def test_a_mesh_in_other_units_asks_for_its_size_and_is_read_with_it(files, garment, factor):
+    write_obj(files[0], worn_pants(garment), garment.mesh)
+    lines = [
+        " ".join(["v", *(f"{float(value) * factor:.9g}" for value in line.split()[1:])]) if line[:2] == "v " else line
+        for line in files[0].read_text().splitlines()
+    ]
+    files[0].write_text("\n".join(lines))
+    with pytest.raises(GarmentError, match=r"a pants is 0\.44 to 2\.5 m long.*--size"):
+        load_obj(*files, "pants", pattern("pants"))
+    loaded = load_obj(*files, "pants", pattern("pants"), size_m=1.0, edge_length=0.02)
+    assert np.ptp(loaded.mesh.vertices, axis=0).max() == pytest.approx(1.0, abs=0.02)
+
+
+def test_keypoints_that_are_endless_brackets_are_refused(files):
+    files[1].write_text("[" * 100_000)
+    with pytest.raises(GarmentError, match="no JSON"):
+        load_obj(*files, "pants", pattern("pants"))

@@ -32,9 +32,11 @@ def holder(tmp_path):
 
 
 def test_a_second_process_is_told_who_works_there(tmp_path, holder):
-    with pytest.raises(ConfigError, match=rf"in use by process {holder.pid} on {platform.node()}.*another folder"):
-        with exclusive(tmp_path):
-            pass
+    with (
+        pytest.raises(ConfigError, match=rf"in use by process {holder.pid} on {platform.node()}.*another folder"),
+        exclusive(tmp_path),
+    ):
+        pass
 
 
 def test_a_killed_holder_holds_no_longer(tmp_path, holder):
@@ -55,9 +57,8 @@ def note_of_another_machine(folder, age):
 
 def test_a_holder_on_another_machine_counts_while_it_gives_signs_of_life(tmp_path):
     note_of_another_machine(tmp_path, age=20)
-    with pytest.raises(ConfigError, match="process 7 on elsewhere"):
-        with exclusive(tmp_path):
-            pass
+    with pytest.raises(ConfigError, match="process 7 on elsewhere"), exclusive(tmp_path):
+        pass
     note_of_another_machine(tmp_path, age=1000)
     with exclusive(tmp_path):
         pass

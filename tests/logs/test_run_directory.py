@@ -153,6 +153,6 @@ def test_a_damaged_description_says_how_to_go_on(tmp_path):
 def test_episodes_without_a_description_are_not_taken_over(tmp_path):
     RunDirectory(tmp_path, {"a": 1}, Score).append(Score(key="one", score=1.0))
     (tmp_path / "run.json").unlink()
-    with pytest.raises(ConfigError, match="put run.json back"):
+    with pytest.raises(ConfigError, match=r"put run\.json back"):
         RunDirectory(tmp_path, {"a": 1}, Score)
     assert not (tmp_path / "run.json").exists()

@@ -53,9 +53,7 @@ def test_a_directory_in_use_is_refused_and_nothing_is_doubled(tmp_path):
 
 def test_processes_racing_on_one_directory_leave_each_episode_once(tmp_path):
     config = tmp_path / "study.toml"
-    config.write_text(
-        'tasks = ["square-corner-*"]\nfirst_seed = 2000\nedge_length = 0.03\nbase = { agent = "noop" }\n'
-    )
+    config.write_text('tasks = ["square-corner-*"]\nfirst_seed = 2000\nedge_length = 0.03\nbase = { agent = "noop" }\n')
     out = tmp_path / "run"
     command = [sys.executable, "-m", "polyfold", "evaluate", str(config), "--out", str(out)]
     racing = [subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) for _ in range(2)]
