@@ -29,6 +29,8 @@ class ComponentSpec(BaseModel):
     def _from_short_form(cls, value: Any) -> Any:
         if isinstance(value, str):
             return {"name": value}
+        if not isinstance(value, dict | ComponentSpec):
+            raise ValueError(f'{value!r} names no component; write a name, for example "caso", or a table with a name')
         if isinstance(value, dict) and "params" not in value:
             return {"name": value.get("name"), "params": {key: v for key, v in value.items() if key != "name"}}
         return value

@@ -15,7 +15,7 @@ def test_toml_round_trip(tmp_path):
     ("text", "says"),
     [
         ('polcy = "caso"', "did you mean 'policy'"),
-        ("policy = 3", "policy"),
+        ("policy = 3", "3 names no component; write a name"),
         ("policy = [", "not valid TOML"),
         ("[policy]\ngamma = 1.0", "policy"),
     ],

@@ -96,8 +96,28 @@ def accepted_params(name: str, params: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def default_api_base(name: str) -> str | None:
-    """Where a local server of this route listens unless told otherwise; None for routes of providers."""
-    return _table()["local"].get(_route(name))
+    """Where a local server of this route listens unless told otherwise; None for routes of providers.
+
+    The environment tells otherwise with ``ROUTE_API_BASE``, as litellm has it, or for Ollama with its own
+    ``OLLAMA_HOST``.
+    """
+    route = _route(name)
+    usual = _table()["local"].get(route)
+    if usual is None:
+        return None
+    family = "ollama" if route.startswith("ollama") else route
+    told = os.environ.get(f"{route.upper()}_API_BASE") or os.environ.get(f"{family.upper()}_API_BASE")
+    host = os.environ.get("OLLAMA_HOST") if family == "ollama" else None
+    return told or (_address(host, usual) if host else usual)
+
+
+def _address(host: str, usual: str) -> str:
+    """An address of ``OLLAMA_HOST``, which may lack its scheme and port, or mean all interfaces of a server."""
+    scheme, _, rest = host.rpartition("://")
+    where, colon, port = rest.rstrip("/").partition(":")
+    where = "127.0.0.1" if where in ("", "0.0.0.0") else where
+    default = "80" if scheme == "http" else "443" if scheme == "https" else usual.rpartition(":")[2]
+    return f"{scheme or 'http'}://{where}:{port if colon else default}"
 
 
 def key_variable(name: str) -> str | None:

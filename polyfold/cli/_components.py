@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import tomllib
 from collections.abc import Sequence
 from typing import Any, get_args
 
@@ -55,7 +56,16 @@ def _parse(assignment: str) -> tuple[str, str, Any]:
             f"--set {assignment!r} does not read KIND.PARAM=VALUE with KIND one of {', '.join(KINDS)}; "
             "for example --set fabric.thickness=0.002"
         )
+    return kind, param, _value(text)
+
+
+def _value(text: str) -> Any:
+    """What is written as JSON or as TOML; anything else is a text."""
     try:
-        return kind, param, json.loads(text)
-    except json.JSONDecodeError:
-        return kind, param, text
+        return json.loads(text)
+    except (json.JSONDecodeError, RecursionError):
+        pass
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return text

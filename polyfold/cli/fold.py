@@ -86,3 +86,5 @@ def _print_result(episode: polyfold.Episode, out: Path | None) -> None:
         print(f"  result: {episode.fidelity.in_words(episode.task)}{_how_to_name(episode.fidelity)}")
     if out is not None:
         print(f"  pictures: {out / 'filmstrip.png'}, {out / 'fold.gif'}")
+    else:
+        print("  pictures: none; --out DIR leaves some")

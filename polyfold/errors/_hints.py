@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, get_args
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
+    from pydantic.fields import FieldInfo
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str | None = None) -> str:
@@ -63,6 +65,25 @@ _FILE_PROBLEMS: tuple[tuple[type[OSError], str], ...] = (
 )
 
 
+def misplaced_truth(values: Mapping[str, Any], fields: Mapping[str, FieldInfo]) -> str:
+    """Say which number is given as true or false, which pydantic takes for 1 and 0; empty if none is.
+
+    Args:
+        values: what is given, by field.
+        fields: a model's fields.
+    """
+    for name, value in values.items():
+        if isinstance(value, bool) and name in fields and _is_a_number(fields[name].annotation):
+            return f"has a bad value for {name!r}: {str(value).lower()} is no number; give one"
+    return ""
+
+
+def _is_a_number(annotation: Any) -> bool:
+    """Whether a field takes a number and no truth value."""
+    kinds = {annotation, *get_args(annotation)}
+    return bool(kinds & {int, float}) and bool not in kinds
+
+
 def validation_problem(error: ValidationError, known: Iterable[str] = (), below: int = 0) -> str:
     """Say what a model of pydantic refused first, and what to do.
 
@@ -83,6 +104,8 @@ def validation_problem(error: ValidationError, known: Iterable[str] = (), below:
     if problem["type"] == "missing":
         return f"has no {place!r}; add it"
     said = problem["msg"].removeprefix("Value error, ")
+    if isinstance(problem["input"], float) and math.isnan(problem["input"]):
+        return f"has a bad value{f' for {place!r}' if place else ''}: nan is no number; give one"
     # A model's own check may already say what to do.
     advises = problem["type"] == "value_error" and ";" in said
     if advises:

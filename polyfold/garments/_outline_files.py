@@ -20,16 +20,16 @@ WORKING_SIZE = 1000
 def load_outline(path: str | Path) -> NDArray[np.float64]:
     """Read an outline [px, y down], shape (M, 2).
 
-    The file holds ``[[x, y], …]``, or an object with that list under ``outline``, or a line of the aRTF Clothes
-    annotations with the polygons under ``mask`` (the largest one counts).
+    The file holds ``[[x, y], …]``, or an object with that list under ``outline``, or annotations: of labelme
+    (``shapes``), of one picture in COCO's format (``annotations``, as polygons), or a line of aRTF Clothes (``mask``).
+    Of several polygons the largest counts.
 
     Raises:
         GarmentError: if the file can't be read or holds no outline.
     """
     content = _json(Path(path))
-    found: Any = content.get("outline", content.get("mask")) if isinstance(content, dict) else content
-    polygons = found if _is_nested(found) else [found]
-    outlines = [_points(polygon, path) for polygon in polygons]
+    polygons = _polygons(content, path)
+    outlines = [_points(polygon, path) for polygon in polygons if polygon or len(polygons) == 1]
     return max(outlines, key=lambda outline: abs(polygon_area(outline)))
 
 
@@ -41,21 +41,21 @@ def load_mask(path: str | Path) -> NDArray[np.bool_]:
     """
     picture = _opened(Path(path))
     cut_out = "A" in picture.getbands() and picture.getchannel("A").getextrema()[0] < 255
-    mask = np.asarray(picture.getchannel("A") if cut_out else picture.convert("L")) > 127
+    pixels = np.asarray(picture.getchannel("A") if cut_out else picture.convert("L"))
+    mask = pixels > (127 if pixels.max() > 1 else 0)  # labels 0 and 1 make a mask too
     if not mask.any() or mask.all():
         raise GarmentError(f"the mask {path} is {'full' if mask.any() else 'empty'}; paint the garment white on black")
     if np.concatenate([mask[0], mask[-1], mask[:, 0], mask[:, -1]]).mean() > 0.5:
         raise GarmentError(
-            f"the mask {path} is bright around its border; paint the garment white on black, not inverted"
+            f"the mask {path} is bright around its border; paint the garment white on black, not inverted, or give a "
+            "photo of dark cloth as a photo (--image)"
         )
     return mask
 
 
 def load_picture(path: str | Path) -> NDArray[np.uint8]:
     """Read a photograph as it is meant to be seen, uint8 RGB, shape (H, W, 3)."""
-    from PIL import ImageOps
-
-    return np.asarray(ImageOps.exif_transpose(_opened(Path(path))).convert("RGB"))
+    return np.asarray(_opened(Path(path)).convert("RGB"))
 
 
 def outline_from_photo(path: str | Path) -> NDArray[np.float64]:
@@ -92,6 +92,36 @@ def _json(path: Path) -> Any:
         raise GarmentError(f"the outline {path} is not valid JSON ({error}); write [[x, y], ...] in pixels") from error
 
 
+def _polygons(content: Any, path: str | Path) -> list[Any]:
+    """The polygons of any of the formats, as they stand there."""
+    if not isinstance(content, dict):
+        return content if _is_nested(content) else [content]
+    if isinstance(shapes := content.get("shapes"), list):
+        return [shape.get("points") for shape in shapes if _is_polygon_of_labelme(shape)] or [None]
+    if isinstance(annotations := content.get("annotations"), list):
+        return _polygons_of_coco(annotations, path)
+    found = content.get("outline", content.get("mask"))
+    return found if _is_nested(found) else [found]
+
+
+def _is_polygon_of_labelme(shape: Any) -> bool:
+    return isinstance(shape, dict) and shape.get("shape_type", "polygon") == "polygon"
+
+
+def _polygons_of_coco(annotations: list[Any], path: str | Path) -> list[Any]:
+    described = [annotation for annotation in annotations if isinstance(annotation, dict)]
+    pictures = {annotation.get("image_id") for annotation in described}
+    if len(pictures) > 1:
+        raise GarmentError(f"{path} annotates {len(pictures)} pictures; keep the annotations of one of them")
+    found = list[Any]()
+    for annotation in described:
+        segmentation = annotation.get("segmentation")
+        if not isinstance(segmentation, list):
+            raise GarmentError(f"{path} holds a segmentation that is no polygon (run lengths?); export polygons")
+        found += [[values[at : at + 2] for at in range(0, len(values), 2)] for values in segmentation]
+    return found or [None]
+
+
 def _is_nested(content: Any) -> bool:
     """Whether this is a list of polygons rather than of points."""
     return bool(
@@ -113,7 +143,8 @@ def _points(polygon: Any, path: str | Path) -> NDArray[np.float64]:
 
 
 def _opened(path: Path) -> Any:
-    from PIL import Image, UnidentifiedImageError
+    """A picture as it is meant to be seen, with 8 bits a channel."""
+    from PIL import Image, ImageOps, UnidentifiedImageError
 
     try:
         picture = Image.open(path)
@@ -122,6 +153,8 @@ def _opened(path: Path) -> Any:
         raise GarmentError(f"{path} is no picture that can be read; give a PNG or JPEG file") from error
     except Image.DecompressionBombError as error:
         raise GarmentError(f"the picture {path} is too large ({error}); make it smaller first") from error
+    except (SyntaxError, ValueError, EOFError) as error:  # what PIL's readers raise of damaged data
+        raise GarmentError(f"the picture {path} is damaged ({error}); save it again as PNG or JPEG") from error
     except OSError as error:
         broken = error.errno is None  # of the picture's own data
         raise GarmentError(
@@ -129,4 +162,16 @@ def _opened(path: Path) -> Any:
             if broken
             else file_problem(error, path)
         ) from error
-    return picture
+    return _in_bytes(ImageOps.exif_transpose(picture))
+
+
+def _in_bytes(picture: Any) -> Any:
+    """The picture with 8 bits a channel; a grey one of 16 or 32 bits, or of floating point, is scaled, not cut off."""
+    from PIL import Image
+
+    if picture.mode not in ("I", "F") and not picture.mode.startswith("I;16"):
+        return picture
+    values = np.nan_to_num(np.asarray(picture).astype(float))
+    most = float(values.max(initial=0.0))
+    white = next((white for white in (1.0, 255.0, 65_535.0) if most <= white), most)
+    return Image.fromarray(np.round(values.clip(0) * (255.0 / white)).astype(np.uint8))

@@ -32,6 +32,11 @@ class Plugin:
     problems: list[Problem] = field(default_factory=list)
 
     @property
+    def to_disable(self) -> str:
+        """What to name in ``$POLYFOLD_DISABLE``: the distribution, since two may have plugins of one name."""
+        return self.distribution or self.name
+
+    @property
     def label(self) -> str:
         """Name with distribution and version, for messages."""
         return f"{self.name!r} ({self.distribution} {self.version})" if self.distribution else f"{self.name!r}"
@@ -48,16 +53,18 @@ class Component:
     plugin: Plugin
 
     def missing_packages(self) -> list[str]:
-        """Distributions in ``needs`` that are not installed."""
+        """Requirements in ``needs`` that no installed distribution meets."""
         return [package for package in self.needs if not _installed(package)]
 
 
 def _installed(package: str) -> bool:
+    from packaging.requirements import InvalidRequirement, Requirement
+
     try:
-        distribution(re.split(r"[\s<>=!~\[;]", package, maxsplit=1)[0])
-    except PackageNotFoundError:
+        wanted = Requirement(package)
+        return wanted.specifier.contains(distribution(wanted.name).version, prereleases=True)
+    except (PackageNotFoundError, InvalidRequirement):
         return False
-    return True
 
 
 def refuse_reserved(kind: str, name: str) -> None:

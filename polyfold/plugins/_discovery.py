@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import sys
 import traceback
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import redirect_stdout
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
@@ -64,13 +66,14 @@ def _described(entry_point: EntryPoint) -> Plugin:
 
 def _load(catalog: Catalog, manager: pluggy.PluginManager, plugin: Plugin, entry_point: EntryPoint) -> None:
     try:
-        target = entry_point.load()
-    except Exception as error:
+        with redirect_stdout(sys.stderr):  # what a plugin prints is no part of a verb's answer
+            target = entry_point.load()
+    except (Exception, SystemExit) as error:
         plugin.problems.append(Problem(_load_failure(error, plugin), traceback.format_exc()))
         return
     try:
         _register(manager, plugin, target)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         plugin.problems.append(Problem(_registration_failure(error), traceback.format_exc()))
         manager.unregister(name=plugin.label)
         return
@@ -85,19 +88,23 @@ def _register(manager: pluggy.PluginManager, plugin: Plugin, target: Any) -> Non
     plugin.problems += _uncalled_hooks(manager, target)
 
 
-def _load_failure(error: Exception, plugin: Plugin) -> str:
+def _load_failure(error: BaseException, plugin: Plugin) -> str:
     missing = error.name if isinstance(error, ModuleNotFoundError) else None
     if missing and missing.partition(".")[0] == BUNDLED:
         return f"it was written for another version of polyfold (there is no {missing} in this one); update it"
     if missing:
-        return f"it could not be imported: the module {missing!r} is missing; install it with: pip install {missing}"
+        again = f": pip install --force-reinstall {plugin.distribution}" if plugin.distribution else ""
+        return (
+            f"it could not be imported: the module {missing!r} is missing; install what has it, or the plugin again, "
+            f"with what it needs{again}"
+        )
     return (
         f"it could not be imported ({type(error).__name__}: {error}); "
-        f"update it, uninstall it or set POLYFOLD_DISABLE={plugin.name}"
+        f"update it, uninstall it or set POLYFOLD_DISABLE={plugin.to_disable}"
     )
 
 
-def _registration_failure(error: Exception) -> str:
+def _registration_failure(error: BaseException) -> str:
     said = " ".join(str(error).split())
     if isinstance(error, pluggy.PluginValidationError):
         return f"a hook has the wrong arguments ({said}); compare with polyfold.plugins.hookspecs"
@@ -125,7 +132,8 @@ def _call_registration(
 ) -> None:
     for implementation in implementations(manager, hook, target):
         try:
-            call(implementation, {"register": register})
-        except Exception as error:
+            with redirect_stdout(sys.stderr):
+                call(implementation, {"register": register})
+        except (Exception, SystemExit) as error:
             summary = f"{hook} failed ({type(error).__name__}: {error}); update or uninstall it"
             plugin.problems.append(Problem(summary, traceback.format_exc()))

@@ -7,6 +7,7 @@ plugin is recorded with its distribution, version and traceback, warned of once,
 from __future__ import annotations
 
 import importlib
+import shlex
 import traceback
 import warnings
 from collections.abc import Mapping
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import pluggy
 
-from polyfold.errors import ConfigError, PluginError, did_you_mean, validation_problem
+from polyfold.errors import ConfigError, PluginError, did_you_mean, misplaced_truth, validation_problem
 from polyfold.plugins import hookspecs
 from polyfold.plugins._calling import call, implementations
 from polyfold.plugins._catalog import Catalog, Component, Plugin, Problem, refuse_reserved
@@ -137,12 +138,12 @@ class Host:
             owners = " and ".join(entry.plugin.label for entry in entries)
             raise PluginError(
                 f"the {singular(kind)} {name!r} is registered by {owners}; "
-                f"uninstall one of them or disable one with POLYFOLD_DISABLE={entries[-1].plugin.name}"
+                f"uninstall one of them or disable one with POLYFOLD_DISABLE={entries[-1].plugin.to_disable}"
             )
         if missing := entries[0].missing_packages():
             raise PluginError(
                 f"the {singular(kind)} {name!r} needs {', '.join(missing)}; "
-                f"install with: pip install {' '.join(missing)}"
+                f"install with: pip install {' '.join(map(shlex.quote, missing))}"
             )
         return entries[0]
 
@@ -270,6 +271,8 @@ def _configured(cls: Any, values: dict[str, Any], owner: str) -> Any:
         if name not in known:
             advice = moved_to(cls, name) or did_you_mean(name, known)
             raise ConfigError(f"{owner} has no parameter {name!r}; {advice}")
+    if wrong := misplaced_truth(values, known):
+        raise ConfigError(f"{owner} {wrong}")
     try:
         return cls.Config(**values)
     except ValidationError as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import Future
 from contextlib import AbstractContextManager
 from itertools import islice
 from typing import Any, TypeVar
@@ -41,22 +42,41 @@ def in_processes(
 def _in_pool(
     work: Callable[[_Job], _Result], waiting: Iterator[_Job], workers: int
 ) -> Generator[tuple[_Job, _Result], None, None]:
-    from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+    from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
     from multiprocessing import get_context
 
     with _one_thread_each():
         known = plugins.portable(), plugins.third_party()
         pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare_worker, known)
         running: dict[Future[_Result], _Job] = {}
+        begun = False
         try:
             running |= {pool.submit(work, job): job for job in islice(waiting, 2 * workers)}
             while running:
                 finished, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in finished:
-                    yield running.pop(future), future.result()
+                    yield running.pop(future), _result_of(future, begun)
+                    begun = True
                     running |= {pool.submit(work, job): job for job in islice(waiting, 1)}
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _result_of(future: Future[_Result], begun: bool) -> _Result:
+    """A job's result. Raises ConfigError if the workers have died, ``begun`` or not."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    try:
+        return future.result()
+    except BrokenProcessPool as error:
+        if begun:
+            raise ConfigError(
+                "a worker process died, perhaps for want of memory; run again to go on, with fewer workers"
+            ) from error
+        raise ConfigError(
+            "the worker processes could not begin: they import the script that starts them, so let it work under "
+            'if __name__ == "__main__": (a script on standard input can have no such guard; use workers=1)'
+        ) from error
 
 
 def on_dask(

@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment, read_toml
-from polyfold.errors import ConfigError, did_you_mean, validation_problem
+from polyfold.errors import ConfigError, did_you_mean, misplaced_truth, validation_problem
 from polyfold.plugins import hookspecs
 from polyfold.plugins._inspection import moved_parameter, parameter_names
 
@@ -75,6 +75,8 @@ class Study(BaseModel):
 def load(path: str | Path) -> Study:
     """Read a study from TOML. Raises ConfigError with the file and the setting that is wrong."""
     settings = read_toml(path)
+    if wrong := misplaced_truth(settings, Study.model_fields):
+        raise ConfigError(f"{path} {wrong}")
     try:
         study = Study(**{"name": Path(path).stem, **settings})
     except ValidationError as error:

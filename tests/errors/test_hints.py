@@ -1,11 +1,12 @@
 """Messages say what an unknown name may have meant, and what a model refused."""
 
+import math
 from typing import Literal
 
 import pytest
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from polyfold.errors import did_you_mean, validation_problem
+from polyfold.errors import did_you_mean, file_problem, misplaced_truth, validation_problem
 
 
 class Inner(BaseModel):
@@ -83,6 +84,42 @@ def test_advice_is_given_once_and_a_missing_value_is_called_missing(settings, sa
     with pytest.raises(ValidationError) as caught:
         Sentence(**settings)
     assert validation_problem(caught.value) == said
+
+
+class Fill(BaseModel):
+    share: float = Field(default=0.5, le=1)
+    count: int | None = None
+    smooth: bool = False
+
+
+@pytest.mark.parametrize("values", [{"share": True}, {"count": False}])
+def test_truth_is_no_number(values):
+    assert "is no number; give one" in misplaced_truth(values, Fill.model_fields)
+
+
+def test_truth_may_stand_where_it_is_asked_for():
+    assert misplaced_truth({"smooth": True, "share": 1, "other": True}, Fill.model_fields) == ""
+
+
+def test_nan_is_called_no_number():
+    with pytest.raises(ValidationError) as caught:
+        Fill(share=math.nan)
+    assert validation_problem(caught.value) == "has a bad value for 'share': nan is no number; give one"
+
+
+@pytest.mark.parametrize(
+    ("raised", "says"),
+    [
+        (FileNotFoundError(2, "No such file"), "there is no file shirt.png; check the path"),
+        (IsADirectoryError(21, "Is a directory"), "shirt.png is a folder; give a file"),
+        (NotADirectoryError(20, "Not a directory"), "there can be no shirt.png"),
+        (PermissionError(13, "Permission denied"), "shirt.png may not be read or written by you"),
+        (OSError(28, "No space left on device"), "the disk is full; make room"),
+        (OSError(5, "Input/output error"), "can't be read or written (Input/output error); check the path"),
+    ],
+)
+def test_what_a_file_lacks_is_said_with_what_to_do(raised, says):
+    assert says in file_problem(raised, "shirt.png")
 
 
 def test_what_the_message_names_already_is_left_out():

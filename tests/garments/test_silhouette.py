@@ -150,9 +150,50 @@ class TestMask:
 
     def test_something_else_is_no_picture(self, tmp_path):
         (tmp_path / "mask.png").write_text("hello")
-        for path in ("mask.png", "absent.png"):
-            with pytest.raises(GarmentError, match="PNG or JPEG"):
-                load_mask(tmp_path / path)
+        with pytest.raises(GarmentError, match="PNG or JPEG"):
+            load_mask(tmp_path / "mask.png")
+        with pytest.raises(GarmentError, match="there is no file"):
+            load_mask(tmp_path / "absent.png")
+
+    @pytest.mark.parametrize("turn", range(1, 9))
+    def test_a_turned_mask_is_read_as_it_is_shown(self, tmp_path, turn):
+        from PIL import ImageOps
+
+        exif = Image.Exif()
+        exif[0x0112] = turn
+        mask = Image.fromarray(shape_mask(120, 160).astype(np.uint8) * 255)
+        mask.save(tmp_path / "mask.png", exif=exif)
+        shown = np.asarray(ImageOps.exif_transpose(Image.open(tmp_path / "mask.png"))) > 127
+        np.testing.assert_array_equal(load_mask(tmp_path / "mask.png"), shown)
+
+    @pytest.mark.parametrize(
+        ("name", "pixels"),
+        [
+            ("labels.png", shape_mask().astype(np.uint8)),
+            ("16 bit.png", shape_mask().astype(np.uint16) * 65_535),
+            ("float.tiff", shape_mask().astype(np.float32)),
+            ("int.tiff", shape_mask().astype(np.int32) * 255),
+        ],
+    )
+    def test_depths_and_labels_are_read(self, tmp_path, name, pixels):
+        Image.fromarray(pixels).save(tmp_path / name)
+        np.testing.assert_array_equal(load_mask(tmp_path / name), shape_mask())
+
+    def test_a_cut_off_picture_is_said_to_be_damaged(self, tmp_path):
+        Image.fromarray(shape_mask().astype(np.uint8) * 255).save(tmp_path / "mask.png")
+        whole = (tmp_path / "mask.png").read_bytes()
+        (tmp_path / "mask.png").write_bytes(whole[: len(whole) // 2])
+        with pytest.raises(GarmentError, match=r"damaged.*save it again"):
+            load_mask(tmp_path / "mask.png")
+
+    def test_a_black_shirt_on_white_is_a_photo(self, tmp_path):
+        from polyfold.api._loaders import is_mask
+
+        Image.fromarray(np.where(shape_mask(), 0, 255).astype(np.uint8)).save(tmp_path / "shirt.png")
+        Image.fromarray(np.where(shape_mask(), 255, 0).astype(np.uint8)).save(tmp_path / "mask.png")
+        assert not is_mask(tmp_path / "shirt.png")
+        assert is_mask(tmp_path / "mask.png")
+        assert iou(fill_polygon(outline_from_photo(tmp_path / "shirt.png"), 400, 400), shape_mask()) > 0.98
 
 
 class TestOutlineFile:
@@ -160,8 +201,15 @@ class TestOutlineFile:
 
     @pytest.mark.parametrize(
         "content",
-        [square, {"outline": square}, {"garment": "towel", "mask": [((0, 0), (1, 0), (0, 1)), square]}],
-        ids=["list", "object", "annotation"],
+        [
+            square,
+            {"outline": square},
+            {"garment": "towel", "mask": [((0, 0), (1, 0), (0, 1)), square]},
+            {"mask": [square, []]},
+            {"shapes": [{"label": "cup", "points": [[1, 1]], "shape_type": "point"}, {"points": square}]},
+            {"annotations": [{"image_id": 3, "segmentation": [[0, 0, 1, 0, 0, 1], [0, 0, 10, 0, 10, 10, 0, 10]]}]},
+        ],
+        ids=["list", "object", "aRTF", "beside an empty one", "labelme", "COCO"],
     )
     def test_reads_every_form(self, tmp_path, content):
         (tmp_path / "outline.json").write_text(json.dumps(content))
@@ -174,6 +222,22 @@ class TestOutlineFile:
         (tmp_path / "outline.json").write_text(text)
         with pytest.raises(GarmentError, match=r"\[\[x, y\], \.\.\.\]"):
             load_outline(tmp_path / "outline.json")
+
+    @pytest.mark.parametrize(
+        ("content", "says"),
+        [
+            ({"annotations": [{"image_id": 1}, {"image_id": 2}]}, "annotates 2 pictures"),
+            ({"annotations": [{"segmentation": {"counts": "x", "size": [2, 2]}}]}, "export polygons"),
+        ],
+    )
+    def test_annotations_that_hold_no_one_outline_say_why(self, tmp_path, content, says):
+        (tmp_path / "outline.json").write_text(json.dumps(content))
+        with pytest.raises(GarmentError, match=says):
+            load_outline(tmp_path / "outline.json")
+
+    def test_a_byte_order_mark_is_no_part_of_it(self, tmp_path):
+        (tmp_path / "outline.json").write_text(json.dumps(self.square), "utf-8-sig")
+        np.testing.assert_array_equal(load_outline(tmp_path / "outline.json"), self.square)
 
     def test_a_missing_file_is_named(self, tmp_path):
         with pytest.raises(GarmentError, match=r"absent\.json"):

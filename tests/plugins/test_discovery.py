@@ -40,7 +40,7 @@ def test_broken_plugin_never_takes_the_host_down(polyfold, name):
         ("misspelt", "did you mean 'register_policies'"),
         ("undecorated", "lacks @hookimpl"),
         ("crashing", "boom at import"),
-        ("lacking", "pip install a_module_nobody_has"),
+        ("lacking", "pip install --force-reinstall polyfold-lacking"),
     ],
 )
 def test_using_what_a_broken_plugin_might_have_registered_says_so(polyfold, name, says):

@@ -188,8 +188,19 @@ def test_stopping_who_does_not_observe_says_so():
             "",
             "is not allowed",
         ),
+        ("import sys\nsys.exit('not on this machine')\n", "", "could not be imported.*not on this machine"),
+        (
+            "class Vain:\n    def __getattr__(self, name):\n        raise SystemExit(name)\nvain = Vain()\n",
+            ":vain",
+            "SystemExit",
+        ),
+        (
+            "from polyfold import hookimpl\n@hookimpl\ndef register_llms(register):\n    raise SystemExit('enough')\n",
+            "",
+            "register_llms failed.*enough",
+        ),
     ],
-    ids=["none", "rude", "arguments", "wrapper", "name"],
+    ids=["none", "rude", "arguments", "wrapper", "name", "exit", "vain", "exit_later"],
 )
 def test_what_is_wrong_with_a_plugin_is_recorded_against_it_alone(installed, request, source, attribute, says):
     name = f"odd_{request.node.callspec.id}"
@@ -200,6 +211,37 @@ def test_what_is_wrong_with_a_plugin_is_recorded_against_it_alone(installed, req
     assert "\n" not in summary
     assert "caso" in host.names("policies")
     host.notify("on_step", step=None, role="method")
+
+
+def test_a_property_that_raises_disturbs_nobody(installed):
+    installed(
+        "shy",
+        "class Shy:\n    @property\n    def hook(self):\n        raise RuntimeError('no one home')\nshy = Shy()\n",
+        ":shy",
+    )
+    host = plugins.Host()
+    assert problems(host, "shy") == []
+    assert "caso" in host.names("policies")
+
+
+def test_what_a_plugin_prints_is_no_part_of_an_answer(installed, capsys):
+    installed(
+        "chatty",
+        "from polyfold import hookimpl\nprint('hello')\n\n@hookimpl\ndef register_llms(register):\n    print('there')\n",
+    )
+    plugins.Host().catalog()
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err == "hello\nthere\n"
+
+
+def test_a_requirement_that_is_installed_in_another_version_is_missing():
+    host = plugins.Host()
+    host.register("policies", "modern", Component, needs=("numpy>=99",))
+    host.register("policies", "usual", Component, needs=("numpy>=1.20", "Pillow"))
+    with pytest.raises(PluginError, match=r"needs numpy>=99; install with: pip install 'numpy>=99'"):
+        host.find("policies", "modern")
+    assert host.find("policies", "usual").name == "usual"
 
 
 @pytest.mark.filterwarnings("ignore:plugin 'unhashable'")
