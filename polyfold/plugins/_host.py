@@ -10,7 +10,8 @@ import importlib
 import shlex
 import traceback
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -149,12 +150,31 @@ class Host:
 
     def _unknown(self, kind: str, name: str) -> str:
         found = self.catalog()
-        message = f"no {singular(kind)} is called {name!r}; {did_you_mean(name, sorted(found.components[kind]))}"
+        known = sorted(found.components[kind])
+        hint = self._which_garment(name, known) if kind == "garments" else did_you_mean(name, known)
+        message = f"no {singular(kind)} is called {name!r}; {hint}"
         troubled = [plugin for plugin in found.plugins if plugin.problems]
         if troubled:
             listed = "; ".join(f"{plugin.label}: {plugin.problems[0].summary}" for plugin in troubled)
             message += f". A plugin that might have registered it has a problem: {listed}"
         return message
+
+    def _which_garment(self, name: str, known: Sequence[str]) -> str:
+        """The kind that people call so, or all kinds with what else they are called; few names are near by chance."""
+        also = {kind: tuple(getattr(self._class_if_any(kind), "also_called", ())) for kind in known}
+        for kind, names in also.items():
+            if name.lower().removesuffix("s") in (kind, *(other.removesuffix("s") for other in names)):
+                return f"did you mean {kind!r}?"
+        if near := get_close_matches(name.lower(), known, n=1, cutoff=0.8):
+            return f"did you mean {near[0]!r}?"
+        listed = (f"{kind} ({', '.join(names)})" if names else kind for kind, names in also.items())
+        return f"there are {', '.join(listed)}"
+
+    def _class_if_any(self, kind: str) -> Any:
+        try:
+            return self.component_class("garments", kind)
+        except PluginError:
+            return None
 
     def component_class(self, kind: str, name: str) -> Any:
         """The class behind a name. Raises PluginError as :meth:`find` does, or if the class can't be imported."""

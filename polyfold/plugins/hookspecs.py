@@ -114,8 +114,9 @@ def register_agents(register: Register) -> None:
 def register_garments(register: Register) -> None:
     """Register kinds of garment: :class:`polyfold.plugins.interfaces.GarmentKind`, polygon template and generator.
 
-    The name is the kind, as users type it: ``--garment skirt``. It may say what it is usually made of
-    (:class:`polyfold.plugins.interfaces.MadeOf`); it is poplin otherwise.
+    The name is the kind, as users type it: ``--garment skirt``. Its class may say what it is usually made of
+    (:class:`polyfold.plugins.interfaces.MadeOf`; else it is poplin) and by which other names people ask for it
+    (:class:`polyfold.plugins.interfaces.AlsoCalled`).
     """
 
 

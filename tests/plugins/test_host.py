@@ -213,6 +213,21 @@ def test_what_is_wrong_with_a_plugin_is_recorded_against_it_alone(installed, req
     host.notify("on_step", step=None, role="method")
 
 
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("trousers", "did you mean 'pants'"),
+        ("Shirt", "did you mean 'tshirt'"),
+        ("towels", "did you mean 'rectangle'"),
+        ("tshrt", "did you mean 'tshirt'"),
+        ("skirt", "there are pants (trousers, jeans, slacks), rectangle (towel, scarf, cloth), square (napkin"),
+    ],
+)
+def test_a_garment_by_another_name_is_told_its_kind_and_an_unknown_one_all_kinds(name, says):
+    with pytest.raises(PluginError, match=re.escape(says)):
+        plugins.Host().find("garments", name)
+
+
 def test_a_property_that_raises_disturbs_nobody(installed):
     installed(
         "shy",
@@ -227,7 +242,8 @@ def test_a_property_that_raises_disturbs_nobody(installed):
 def test_what_a_plugin_prints_is_no_part_of_an_answer(installed, capsys):
     installed(
         "chatty",
-        "from polyfold import hookimpl\nprint('hello')\n\n@hookimpl\ndef register_llms(register):\n    print('there')\n",
+        "from polyfold import hookimpl\nprint('hello')\n\n"
+        "@hookimpl\ndef register_llms(register):\n    print('there')\n",
     )
     plugins.Host().catalog()
     said = capsys.readouterr()

@@ -43,6 +43,7 @@ class Pants:
     kind: ClassVar[str] = "pants"
     pattern: ClassVar[Pattern] = PATTERN
     default_fabric: ClassVar[str] = "denim"
+    also_called: ClassVar[tuple[str, ...]] = ("trousers", "jeans", "slacks")
 
     def template(self) -> Template:
         """The polygon template."""

@@ -20,6 +20,7 @@ class Rectangle:
     pattern: ClassVar[Pattern] = CLOTH
     # Of this size they are napkins and tea towels, not bath towels, which would be terry.
     default_fabric: ClassVar[str] = "poplin"
+    also_called: ClassVar[tuple[str, ...]] = ("towel", "scarf", "cloth")
 
     def template(self) -> Template:
         """The polygon template."""

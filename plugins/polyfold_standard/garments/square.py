@@ -19,6 +19,7 @@ class Square:
     kind: ClassVar[str] = "square"
     pattern: ClassVar[Pattern] = CLOTH
     default_fabric: ClassVar[str] = "poplin"
+    also_called: ClassVar[tuple[str, ...]] = ("napkin", "handkerchief", "bandana")
 
     def template(self) -> Template:
         """The polygon template."""

@@ -50,6 +50,7 @@ class TShirt:
     kind: ClassVar[str] = "tshirt"
     pattern: ClassVar[Pattern] = PATTERN
     default_fabric: ClassVar[str] = "jersey"
+    also_called: ClassVar[tuple[str, ...]] = ("t-shirt", "shirt", "tee", "top")
 
     def template(self) -> Template:
         """The polygon template."""
