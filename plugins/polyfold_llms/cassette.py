@@ -72,9 +72,7 @@ class Cassette:
             entry = json.loads(line, parse_constant=_no_constants)
             sound = isinstance(entry["place"], dict) and (_is_recording(entry) or entry["key"] in self._entries)
         except (ValueError, KeyError, TypeError, RecursionError) as error:
-            raise ConfigError(
-                f"{where} is no recording ({error!r}); remove the line or use another cassette"
-            ) from error
+            raise ConfigError(f"{where} is no recording; remove the line or use another cassette") from error
         if not sound:
             raise ConfigError(f"{where} names a recording that does not stand above it; remove the line")
         return entry

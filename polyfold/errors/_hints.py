@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import math
+import reprlib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, get_args
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any, get_args
 if TYPE_CHECKING:
     from pydantic import ValidationError
     from pydantic.fields import FieldInfo
+    from pydantic_core import ErrorDetails
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str | None = None) -> str:
@@ -30,7 +32,14 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str | None = None) 
         return f"did you mean {' or '.join(map(repr, near))}?"
     if otherwise is not None:
         return otherwise
-    return f"the known ones are {', '.join(known)}" if known else "there are none"
+    if not known:
+        return "there are none"
+    more = f" and {len(known) - _MANY} more" if len(known) > _MANY else ""
+    return f"the known ones are {', '.join(known[:_MANY])}{more}"
+
+
+_MANY = 20
+"""Names that fit into a message."""
 
 
 def file_problem(error: OSError, path: object = None) -> str:
@@ -78,6 +87,34 @@ def misplaced_truth(values: Mapping[str, Any], fields: Mapping[str, FieldInfo]) 
     return ""
 
 
+def _in_plain_words(problem: ErrorDetails) -> str:
+    """What pydantic says, without the names of its own and Python's types."""
+    wanted = _WANTED.get(problem["type"])
+    if wanted is None:
+        return problem["msg"].removeprefix("Value error, ")
+    if problem["input"] is None:
+        return f"{wanted} is wanted"
+    return f"{wanted} is wanted, not {reprlib.repr(problem['input'])}"
+
+
+_WANTED = {
+    "string_type": "a text",
+    "tuple_type": "a list",
+    "list_type": "a list",
+    "dict_type": "a table",
+    "model_type": "a table",
+    "int_type": "a whole number",
+    "int_parsing": "a whole number",
+    "int_from_float": "a whole number",
+    "float_type": "a number",
+    "float_parsing": "a number",
+    "finite_number": "a finite number",
+    "bool_type": "true or false",
+    "bool_parsing": "true or false",
+    "string_pattern_mismatch": "a name of letters, digits, '.', '_' and '-'",
+}
+
+
 def _is_a_number(annotation: Any) -> bool:
     """Whether a field takes a number and no truth value."""
     kinds = {annotation, *get_args(annotation)}
@@ -103,7 +140,7 @@ def validation_problem(error: ValidationError, known: Iterable[str] = (), below:
         return f"has no setting {place!r}; {did_you_mean(place, known) if known else 'remove it'}"
     if problem["type"] == "missing":
         return f"has no {place!r}; add it"
-    said = problem["msg"].removeprefix("Value error, ")
+    said = _in_plain_words(problem)
     if isinstance(problem["input"], float) and math.isnan(problem["input"]):
         return f"has a bad value{f' for {place!r}' if place else ''}: nan is no number; give one"
     # A model's own check may already say what to do.

@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import cache
 
 from polyfold import plugins
-from polyfold.errors import ConfigError, PluginError
+from polyfold.errors import ConfigError, PluginError, did_you_mean
+from polyfold.plugins._fabrics import garment_template
 from polyfold.tasks import OpenTask, Suite, Task, load_suite
 
 
@@ -27,9 +28,22 @@ def accepted_tasks(name: str, goal: OpenTask) -> tuple[Task, ...]:
 @cache
 def _checked(name: str, target: str) -> Suite:
     found = _loaded(target)
+    for task in found.tasks:
+        _check_points(target, task)
     for goal in found.goals:
         _accepted(name, found, goal)
     return found
+
+
+def _check_points(where: str, task: Task) -> None:
+    """Refuse points that the kind of garment does not have, if the kind is installed."""
+    if task.garment not in plugins.names("garments"):
+        return
+    known = garment_template(task.garment).names
+    for name in sorted(task.points() - set(known)):
+        raise ConfigError(
+            f"{where}: task {task.id}: a {task.garment} has no point {name!r}; {did_you_mean(name, known)}"
+        )
 
 
 @cache
@@ -83,5 +97,5 @@ def find_task(task_id: str, kind: str) -> Task:
     for task in tasks:
         if task.id == task_id:
             return task
-    known = ", ".join(task.id for task in tasks)
-    raise ConfigError(f"no task for a {kind} is called {task_id!r}; choose one of: {known or 'none is installed'}")
+    hint = did_you_mean(task_id, [task.id for task in tasks])
+    raise ConfigError(f"no task for a {kind} is called {task_id!r}; {hint}; see: polyfold tasks")

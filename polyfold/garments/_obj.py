@@ -149,7 +149,7 @@ def _cleaned(surface: ObjFile) -> Any:
 
 def _large_pieces(mesh: Any) -> list[Any]:
     """The pieces of a mesh without loose scraps such as buttons, the largest first."""
-    pieces = sorted(mesh.split(only_watertight=False), key=lambda piece: -piece.area)
+    pieces = sorted(mesh.split(only_watertight=False, repair=False), key=lambda piece: -piece.area)
     return [piece for piece in pieces if piece.area > 0.05 * pieces[0].area]
 
 

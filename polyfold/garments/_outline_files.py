@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from polyfold.errors import GarmentError, file_problem
 from polyfold.garments._silhouette import find_cloth
+from polyfold.garments._twin import repair_outline
 from polyfold.geometry import contour_of, polygon_area
 
 WORKING_SIZE = 1000
@@ -30,7 +31,12 @@ def load_outline(path: str | Path) -> NDArray[np.float64]:
     content = _json(Path(path))
     polygons = _polygons(content, path)
     outlines = [_points(polygon, path) for polygon in polygons if polygon or len(polygons) == 1]
-    return max(outlines, key=lambda outline: abs(polygon_area(outline)))
+    found = max(outlines, key=lambda outline: abs(polygon_area(outline)))
+    try:
+        repair_outline(found)
+    except GarmentError as error:
+        raise GarmentError(f"{path}: {error}") from error
+    return found
 
 
 def load_mask(path: str | Path) -> NDArray[np.bool_]:

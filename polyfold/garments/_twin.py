@@ -85,7 +85,9 @@ def repair_outline(outline: ArrayLike) -> Floats:
     repaired = shapely.make_valid(shapely.Polygon(points))
     parts = [part for part in shapely.get_parts(shapely.get_parts(repaired)) if part.geom_type == "Polygon"]
     largest = max(parts, key=lambda part: part.area, default=None)
-    if largest is None or largest.area <= 0 or largest.area < 0.75 * sum(part.area for part in parts):
+    if largest is None or largest.area <= 0:
+        raise GarmentError("the outline encloses nothing; draw it around the garment once")
+    if largest.area < 0.75 * sum(part.area for part in parts):
         raise GarmentError("the outline crosses itself and falls apart; draw it around the garment once")
     return _clockwise(shapely.get_coordinates(largest.exterior)[:-1])
 

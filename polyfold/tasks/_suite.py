@@ -58,12 +58,15 @@ class Fold(BaseModel):
     def _one_way(self) -> Fold:
         if (self.pairs is None) == (self.crease is None) or (self.crease is None) != (self.lift is None):
             raise ValueError("a step has either 'pairs', or 'crease' with 'lift'; give exactly one of the two")
-        for point in self._points():
+        if any(start == end for start, end in self.pairs or ()):
+            raise ValueError("a pair folds a point onto itself; name two points")
+        for point in self.points():
             if not point or abs(sum(point.values()) - 1.0) > 0.01:
                 raise ValueError(f"the weights of a point must sum to 1, got {point}; correct them")
         return self
 
-    def _points(self) -> list[dict[str, float]]:
+    def points(self) -> list[dict[str, float]]:
+        """Every point that it names."""
         if self.pairs is not None:
             return [point for pair in self.pairs for point in pair]
         return [*(self.crease or ()), self.lift or {}]
@@ -89,6 +92,10 @@ class Task(BaseModel):
     steps: tuple[Fold, ...] = Field(min_length=1)
     instructions: tuple[str, ...] = ()
     split: Literal["seen", "unseen"] | None = None
+
+    def points(self) -> set[str]:
+        """The keypoints that its folds go by."""
+        return {name for fold in self.steps for point in fold.points() for name in point}
 
 
 class Suite(BaseModel):

@@ -223,11 +223,10 @@ def _read_description(path: Path) -> Description:
         raise ConfigError(f"there is no data set in {path}; make one with: polyfold collect --out {path}")
     try:
         description = json.loads(file.read_text("utf-8"))
-        description.get("schema_version")
-    except (ValueError, AttributeError) as error:
-        raise ConfigError(
-            f"{file} is damaged ({error}); remove it and collect with the same options again, which keeps the shards"
-        ) from error
+    except (ValueError, RecursionError) as error:
+        raise _damaged(file, str(error)) from error
+    if not isinstance(description, dict) or "parameters" not in description:
+        raise _damaged(file, "it describes no data set")
     if description.get("schema_version") == 1:
         return _from_schema_1(description)
     if description.get("schema_version") != SCHEMA:
@@ -235,6 +234,12 @@ def _read_description(path: Path) -> Description:
             f"{file} has schema version {description.get('schema_version')}, this polyfold reads {SCHEMA}; collect anew"
         )
     return description
+
+
+def _damaged(file: Path, why: str) -> ConfigError:
+    return ConfigError(
+        f"{file} is damaged ({why}); remove it and collect with the same options again, which keeps the shards"
+    )
 
 
 def _from_schema_1(description: Description) -> Description:
