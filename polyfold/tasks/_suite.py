@@ -58,8 +58,6 @@ class Fold(BaseModel):
     def _one_way(self) -> Fold:
         if (self.pairs is None) == (self.crease is None) or (self.crease is None) != (self.lift is None):
             raise ValueError("a step has either 'pairs', or 'crease' with 'lift'; give exactly one of the two")
-        if any(start == end for start, end in self.pairs or ()):
-            raise ValueError("a pair folds a point onto itself; name two points")
         for point in self.points():
             if not point or abs(sum(point.values()) - 1.0) > 0.01:
                 raise ValueError(f"the weights of a point must sum to 1, got {point}; correct them")

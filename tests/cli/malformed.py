@@ -147,7 +147,6 @@ def _suites():
         head + TASK + "steps = [{}]",
         head + TASK + 'steps = [{ pairs = [["top_lft", "bottom_right"]] }]',
         head + TASK + 'steps = [{ pairs = [["top_left"]] }]',
-        head + TASK + 'steps = [{ pairs = [["top_left", "top_left"]] }]',
         head + TASK + 'steps = [{ crease = ["top_left", "bottom_right"] }]',
         head + TASK + 'steps = [{ pairs = [["top_left", { bottom_right = 0.3 }]] }]',
         head + 2 * (TASK + 'steps = [{ pairs = [["top_left", "bottom_right"]] }]\n'),
