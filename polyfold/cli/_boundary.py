@@ -24,17 +24,13 @@ def answer(error: BaseException) -> tuple[str, int] | None:
     if isinstance(error, OSError):
         return file_problem(error), FAILED
     if isinstance(error, UnicodeError):
-        return f"a text holds what is no text ({error.reason if _has_reason(error) else error}); write it anew", FAILED
+        return f"a text holds what is no text ({getattr(error, 'reason', error)}); write it anew", FAILED
     if isinstance(error, ValueError):
         from pydantic import ValidationError
 
         if isinstance(error, ValidationError):
             return f"{error.title} {validation_problem(error)}", FAILED
     return None
-
-
-def _has_reason(error: UnicodeError) -> bool:
-    return isinstance(error, UnicodeEncodeError | UnicodeDecodeError)
 
 
 def speak_any_text() -> None:

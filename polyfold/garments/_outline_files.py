@@ -107,7 +107,7 @@ def _polygons(content: Any, path: str | Path) -> list[Any]:
     if isinstance(annotations := content.get("annotations"), list):
         return _polygons_of_coco(annotations, path)
     found = content.get("outline", content.get("mask"))
-    return found if _is_nested(found) else [found]
+    return list(found) if found and _is_nested(found) else [found]
 
 
 def _is_polygon_of_labelme(shape: Any) -> bool:
