@@ -8,7 +8,8 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from polyfold.errors import ConfigError, file_problem, validation_problem
+from polyfold.errors import ConfigError, validation_problem
+from polyfold.errors._hints import file_problem
 
 __all__ = ["ComponentSpec", "Experiment", "load_experiment", "read_toml", "to_toml"]
 

@@ -17,7 +17,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from polyfold.cli import whole_number
 from polyfold.errors import ConfigError, LLMAccessError, LLMError
 from polyfold.types import Reply
 from polyfold_llms.batch import FORMS, PendingRequest, export_line, read_answers, read_pending, with_cost
@@ -58,9 +57,7 @@ def _configure(parser: argparse.ArgumentParser) -> None:
     fill.add_argument(
         "--set", metavar="PARAM=VALUE", action="append", default=[], help="a parameter of that backend; may be repeated"
     )
-    fill.add_argument(
-        "--workers", type=whole_number(1), default=8, metavar="N", help="calls at once, with --llm (default: 8)"
-    )
+    fill.add_argument("--workers", type="count", default=8, metavar="N", help="calls at once, with --llm (default: 8)")
 
 
 def _setting(text: str) -> tuple[str, Any]:

@@ -14,11 +14,11 @@ from typing import Any, NoReturn, Protocol, TextIO
 
 import polyfold
 from polyfold.cli._boundary import answer, flush, speak_any_text
-from polyfold.cli._numbers import metres, whole_number
+from polyfold.cli._numbers import TYPES
 from polyfold.errors import did_you_mean
 from polyfold.plugins import catalog, refresh
 
-__all__ = ["main", "metres", "whole_number"]
+__all__ = ["main"]
 
 VERBS = {
     "fold": ("polyfold.cli.fold", "fold a garment from a sentence, in simulation"),
@@ -75,7 +75,12 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 class Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line; the options are a ``--help`` away."""
+    """Says what is wrong in one line, the options are a ``--help`` away; and knows some types of options by name."""
+
+    def __init__(self, *arguments: Any, **settings: Any) -> None:
+        super().__init__(*arguments, **settings)
+        for name, parse in TYPES.items():
+            self.register("type", name, parse)
 
     def error(self, message: str) -> NoReturn:
         """End with exit status 2."""

@@ -6,7 +6,8 @@ import os
 import sys
 from contextlib import suppress
 
-from polyfold.errors import PolyfoldError, RefusedError, file_problem, validation_problem
+from polyfold.errors import PolyfoldError, RefusedError, validation_problem
+from polyfold.errors._hints import file_problem
 
 FAILED, REFUSED, INTERRUPTED = 1, 3, 130
 

@@ -6,14 +6,13 @@ import argparse
 from pathlib import Path
 
 import polyfold
-from polyfold.cli._numbers import metres, whole_number
 
 
 def add_source_options(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("--garment", default="tshirt", metavar="KIND", help="kind of garment (default: tshirt)")
-    parser.add_argument("--seed", type=whole_number(), default=0, help="which garment and how it lies (default: 0)")
-    parser.add_argument("--edge-length", type=metres, metavar="METRES", help="mesh size (default: by kind)")
+    parser.add_argument("--seed", type="seed", default=0, help="which garment and how it lies (default: 0)")
+    parser.add_argument("--edge-length", type="metres", metavar="METRES", help="mesh size (default: by kind)")
     twin = parser.add_argument_group("a real garment instead of a seeded one")
     source = twin.add_mutually_exclusive_group()
     source.add_argument("--mask", type=Path, metavar="PNG", help="mask of the garment: a simulated twin is built")
@@ -21,7 +20,7 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     source.add_argument("--image", type=Path, metavar="PHOTO", help="photo of the garment on a plain background")
     source.add_argument("--mesh", type=Path, metavar="OBJ", help="triangle mesh; give --keypoints too")
     twin.add_argument("--keypoints", type=Path, metavar="JSON", help="keypoint name -> vertex index of the mesh")
-    twin.add_argument("--size", type=metres, metavar="METRES", help="longest side of the real garment's bounding box")
+    twin.add_argument("--size", type="metres", metavar="METRES", help="longest side of the real garment's bounding box")
 
 
 def garment_from(arguments: argparse.Namespace, experiment: polyfold.Experiment) -> polyfold.Garment:

@@ -35,3 +35,7 @@ def metres(text: str) -> float:
     if not (math.isfinite(length) and length > 0):
         raise argparse.ArgumentTypeError(f"{text!r} is no length; give metres above zero, for example 0.02")
     return length
+
+
+TYPES = {"seed": whole_number(0), "count": whole_number(1), "metres": metres}
+"""By the name that an option of any verb, a plugin's too, gives as its ``type``."""

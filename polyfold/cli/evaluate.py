@@ -6,7 +6,6 @@ import argparse
 from pathlib import Path
 
 import polyfold
-from polyfold.cli._numbers import whole_number
 from polyfold.studies import Study
 from polyfold.studies._cell import PICTURES
 from polyfold.studies._study import made_of, with_variants
@@ -17,7 +16,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("config", type=Path, help="study, for example experiments/smoke.toml")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="run directory; resumed if it exists")
     parser.add_argument(
-        "--workers", type=whole_number(1), default=1, metavar="N", help="processes on this machine (default: 1)"
+        "--workers", type="count", default=1, metavar="N", help="processes on this machine (default: 1)"
     )
     parser.add_argument("--engine", choices=["local", "dask"], default="local", help="dask: a cluster")
     parser.add_argument("--address", metavar="URL", help="of the Dask scheduler (default: start one here)")
@@ -32,9 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="go on with a run although code, prompts or weights have changed since; the run records it",
     )
-    parser.add_argument(
-        "--garments", type=whole_number(1), metavar="N", help="garments per kind instead of the study's"
-    )
+    parser.add_argument("--garments", type="count", metavar="N", help="garments per kind instead of the study's")
     parser.add_argument("--fabric", metavar="NAME", help="what garments are made of where the variant names none")
     parser.add_argument("--variants", nargs="+", metavar="NAME", help="only these of the study's variants")
 

@@ -8,17 +8,14 @@ from pathlib import Path
 import polyfold
 from polyfold import plugins
 from polyfold.cli._components import add_component_options, experiment_from
-from polyfold.cli._numbers import whole_number
 from polyfold.plugins._fabrics import default_fabric
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
     parser.add_argument("--garment", action="append", metavar="KIND", help="only this kind; may be repeated")
-    parser.add_argument(
-        "--count", type=whole_number(1), default=6, metavar="N", help="garments of each kind (default: 6)"
-    )
-    parser.add_argument("--seed", type=whole_number(), default=0, help="first seed (default: 0)")
+    parser.add_argument("--count", type="count", default=6, metavar="N", help="garments of each kind (default: 6)")
+    parser.add_argument("--seed", type="seed", default=0, help="first seed (default: 0)")
     parser.add_argument("--out", type=Path, default=Path("garments.png"), metavar="PNG", help="default: garments.png")
     add_component_options(parser, ["simulator", "fabric"])
 

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from polyfold import plugins
 from polyfold.cli._components import add_component_options, experiment_from
 from polyfold.cli._garment_source import add_source_options, garment_from
-from polyfold.cli._numbers import whole_number
 from polyfold.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -33,9 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     show = actions.add_parser("show", help="one prompt as the model gets it, with its number of tokens")
     show.add_argument("role", nargs="?", help="for example subgoals or fold_line; without one, the roles are listed")
     show.add_argument("--instruction", default="fold it in half", help="default: fold it in half")
-    show.add_argument(
-        "--step", type=whole_number(), default=0, metavar="N", help="after N folds, for what is asked per fold"
-    )
+    show.add_argument("--step", type="seed", default=0, metavar="N", help="after N folds, for what is asked per fold")
     show.add_argument("--model", metavar="ROUTE/MODEL", help="count tokens by this model's tokenizer (needs litellm)")
     show.add_argument("--json", action="store_true", help="print one JSON object")
     add_source_options(show)

@@ -1,6 +1,6 @@
 """The typed hierarchy of errors, and the phrases that their messages share. Every message ends in what to do."""
 
-from polyfold.errors._hints import did_you_mean, file_problem, misplaced_truth, validation_problem
+from polyfold.errors._hints import did_you_mean, validation_problem
 from polyfold.errors._types import (
     ActionError,
     ConfigError,
@@ -28,7 +28,5 @@ __all__ = [
     "RefusedError",
     "SimulationError",
     "did_you_mean",
-    "file_problem",
-    "misplaced_truth",
     "validation_problem",
 ]

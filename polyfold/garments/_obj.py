@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.errors import GarmentError, file_problem
+from polyfold.errors import GarmentError
+from polyfold.errors._hints import file_problem
 from polyfold.garments._flatten import flatten, front_faces
 from polyfold.garments._garment import Garment
 from polyfold.garments._obj_file import ObjFile, read_obj, welded

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.errors import GarmentError, file_problem
+from polyfold.errors import GarmentError
+from polyfold.errors._hints import file_problem
 
 Floats = NDArray[np.float64]
 Faces = NDArray[np.int64]

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.errors import GarmentError, file_problem
+from polyfold.errors import GarmentError
+from polyfold.errors._hints import file_problem
 from polyfold.garments._silhouette import find_cloth
 from polyfold.garments._twin import repair_outline
 from polyfold.geometry import contour_of, polygon_area

@@ -2,11 +2,10 @@
 
 from polyfold.logs._exclusive import exclusive
 from polyfold.logs._json_lines import JsonLines
-from polyfold.logs._records import EpisodeRecord, FoldRecord, KeyedRecord, RunRecord, StudyEpisodeRecord
+from polyfold.logs._records import FoldRecord, KeyedRecord, RunRecord, StudyEpisodeRecord
 from polyfold.logs._run_directory import RunDirectory, read_episodes, read_run
 
 __all__ = [
-    "EpisodeRecord",
     "FoldRecord",
     "JsonLines",
     "KeyedRecord",

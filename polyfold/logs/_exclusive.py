@@ -13,7 +13,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from polyfold.errors import ConfigError, file_problem
+from polyfold.errors import ConfigError
+from polyfold.errors._hints import file_problem
 from polyfold.logs._files import write_atomically
 
 if TYPE_CHECKING:

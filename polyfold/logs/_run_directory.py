@@ -17,7 +17,8 @@ from typing import Any, Generic, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from polyfold.config import ComponentSpec
-from polyfold.errors import ConfigError, file_problem, validation_problem
+from polyfold.errors import ConfigError, validation_problem
+from polyfold.errors._hints import file_problem
 from polyfold.logs import _schema_1
 from polyfold.logs._files import write_atomically
 from polyfold.logs._fingerprint import Fingerprint

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import pluggy
 
-from polyfold.errors import ConfigError, PluginError, did_you_mean, misplaced_truth, validation_problem
+from polyfold.errors import ConfigError, PluginError, did_you_mean, validation_problem
+from polyfold.errors._hints import misplaced_truth
 from polyfold.plugins import hookspecs
 from polyfold.plugins._calling import call, implementations
 from polyfold.plugins._catalog import Catalog, Component, Plugin, Problem, refuse_reserved

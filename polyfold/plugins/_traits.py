@@ -35,13 +35,6 @@ class MadeOf(Protocol):
 
 
 @runtime_checkable
-class AlsoCalled(Protocol):
-    """A kind of garment that says by which other names people may ask for it."""
-
-    also_called: ClassVar[Sequence[str]]
-
-
-@runtime_checkable
 class TakesArgument(Protocol):
     """A component that is chosen with an argument, as ``litellm:openai/gpt-4o``: the field of ``Config`` it sets."""
 

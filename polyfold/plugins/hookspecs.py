@@ -115,8 +115,8 @@ def register_garments(register: Register) -> None:
     """Register kinds of garment: :class:`polyfold.plugins.interfaces.GarmentKind`, polygon template and generator.
 
     The name is the kind, as users type it: ``--garment skirt``. Its class may say what it is usually made of
-    (:class:`polyfold.plugins.interfaces.MadeOf`; else it is poplin) and by which other names people ask for it
-    (:class:`polyfold.plugins.interfaces.AlsoCalled`).
+    (:class:`polyfold.plugins.interfaces.MadeOf`; else it is poplin) and, in a tuple ``also_called``, by which other
+    names people ask for it.
     """
 
 
@@ -151,7 +151,11 @@ def register_criteria(register: Register) -> None:
 
 @hookspec
 def register_commands(register: Register) -> None:
-    """Register CLI verbs. ``target`` is a class or module with ``configure(parser)`` and ``run(arguments) -> int``."""
+    """Register CLI verbs. ``target`` is a class or module with ``configure(parser)`` and ``run(arguments) -> int``.
+
+    The parser knows three types of options by name besides argparse's own: ``type="seed"`` takes whole numbers from 0,
+    ``"count"`` from 1, and ``"metres"`` lengths above zero.
+    """
 
 
 @hookspec

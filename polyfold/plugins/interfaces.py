@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from polyfold.garments import Fabric, Garment, Pattern
 from polyfold.geometry import FoldLine
 from polyfold.plugins._traits import (
-    AlsoCalled,
     Configurable,
     MadeOf,
     MovedParameters,
@@ -37,7 +36,6 @@ from polyfold.types._conversation import Message, Reply
 __all__ = [
     "LLM",
     "Agent",
-    "AlsoCalled",
     "Configurable",
     "Conversation",
     "FabricKind",

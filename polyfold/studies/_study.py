@@ -17,7 +17,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment, read_toml
-from polyfold.errors import ConfigError, did_you_mean, misplaced_truth, validation_problem
+from polyfold.errors import ConfigError, did_you_mean, validation_problem
+from polyfold.errors._hints import misplaced_truth
 from polyfold.plugins import hookspecs
 from polyfold.plugins._inspection import moved_parameter, parameter_names
 

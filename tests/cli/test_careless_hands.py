@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from polyfold.cli import _parser, main
+from polyfold.cli._numbers import TYPES
 
 NOT_WHOLE = ("-1", "nan", "1.5", "many", "9" * 30, "9" * 5000, "")
 NO_LENGTH = ("0", "-0.01", "nan", "inf", "long", "")
@@ -42,22 +43,22 @@ NUMBERS = [
     (*before, option.option_strings[0])
     for verb in VERBS.split()
     for before, option in options_of(verb)
-    if callable(option.type) and option.type.__module__ in ("polyfold.cli._numbers", "builtins")
+    if option.type in TYPES
 ]
 
 
-def test_every_number_of_every_verb_is_checked_by_the_same_functions():
+def test_every_number_of_every_verb_is_checked_in_the_same_way():
     assert len(NUMBERS) >= 20
     for verb in VERBS.split():
         for _, option in options_of(verb):
-            assert option.type not in (int, float), f"{verb} {option.option_strings}: use polyfold.cli.whole_number"
+            assert option.type not in (int, float), f"{verb} {option.option_strings}: use one of {', '.join(TYPES)}"
 
 
 @pytest.mark.parametrize("number", NUMBERS, ids=" ".join)
 def test_a_wrong_number_is_refused_with_what_is_wanted(polyfold, number):
     *before, option = number
     (action,) = [it for flags, it in options_of(before[0]) if [*flags, it.option_strings[0]] == [*before, option]]
-    wrong = NO_LENGTH if action.metavar in ("METRES", "M") else NOT_WHOLE
+    wrong = NO_LENGTH if action.type == "metres" else NOT_WHOLE
     for text in wrong:
         said = one_line(polyfold(*before, f"{option}={text}"), 2)
         assert option in said

@@ -6,7 +6,8 @@ from typing import Literal
 import pytest
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from polyfold.errors import did_you_mean, file_problem, misplaced_truth, validation_problem
+from polyfold.errors import did_you_mean, validation_problem
+from polyfold.errors._hints import file_problem, misplaced_truth
 
 
 class Inner(BaseModel):

@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from polyfold.cli import metres, whole_number
 from polyfold.errors import ConfigError, validation_problem
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ class Collect:
             "--describe", type=Path, metavar="DIR", help="show what a data set holds instead of collecting"
         )
         parser.add_argument(
-            "--folds", type=whole_number(1), default=10_000, metavar="N", help="at least this many (default: 10000)"
+            "--folds", type="count", default=10_000, metavar="N", help="at least this many (default: 10000)"
         )
         parser.add_argument("--kind", default="tshirt", help="of the garments (default: tshirt)")
         parser.add_argument("--simulator", default="xpbd", metavar="NAME", help="default: xpbd")
@@ -36,14 +35,14 @@ class Collect:
         parser.add_argument("--segmenter", default="colour", metavar="NAME", help="default: colour")
         parser.add_argument("--seeds", default="1000-1099", metavar="A-B", help="garment seeds (default: 1000-1099)")
         parser.add_argument(
-            "--workers", type=whole_number(1), default=1, metavar="N", help="processes on this machine (default: 1)"
+            "--workers", type="count", default=1, metavar="N", help="processes on this machine (default: 1)"
         )
         parser.add_argument(
-            "--edge-length", type=metres, default=0.018, metavar="M", help="of the mesh (default: 0.018)"
+            "--edge-length", type="metres", default=0.018, metavar="M", help="of the mesh (default: 0.018)"
         )
         parser.add_argument("--mix", metavar="RECIPE=COUNT,...", help="picks tried from every state, by recipe")
         parser.add_argument("--weights", type=Path, metavar="FILE", help="or name: the network that chosen asks")
-        parser.add_argument("--seed", type=whole_number(), default=0, help="of everything random (default: 0)")
+        parser.add_argument("--seed", type="seed", default=0, help="of everything random (default: 0)")
 
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:

@@ -33,7 +33,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polyfold.analysis import open_results
-from polyfold.cli import whole_number
 from polyfold.errors import ConfigError, PolyfoldError
 from polyfold_fgpnp.studies.curve_figures import sizes_figure, training_figure
 from polyfold_fgpnp.studies.curve_tables import sizes_table, training_table
@@ -66,12 +65,10 @@ def _parser() -> argparse.ArgumentParser:
     study.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of `polyfold train`")
     study.add_argument("--last", action="store_true", help="only the last weights of each, not its snapshots")
     study.add_argument("--name", default="curve", help="of the study (default: curve)")
-    study.add_argument("--tasks-per-kind", type=whole_number(1), default=5, metavar="N", help="default: 5")
+    study.add_argument("--tasks-per-kind", type=int, default=5, metavar="N", help="default: 5")
     study.add_argument("--steps", choices=["single", "multi"], help="only tasks of one fold, or of several")
-    study.add_argument("--garments", type=whole_number(1), default=3, metavar="N", help="per kind (default: 3)")
-    study.add_argument(
-        "--first-seed", type=whole_number(), default=0, metavar="SEED", help="of the garments (default: 0)"
-    )
+    study.add_argument("--garments", type=int, default=3, metavar="N", help="per kind (default: 3)")
+    study.add_argument("--first-seed", type=int, default=0, metavar="SEED", help="of the garments (default: 0)")
     study.set_defaults(run=_print_study)
     training = verbs.add_parser("training", help="loss, rank correlation and success over epochs (Fig. 10)")
     training.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folders of `polyfold train`, one per seed")

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold import plugins
-from polyfold.cli import whole_number
 from polyfold.config import Experiment
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.evaluation import known_tasks
@@ -43,7 +42,7 @@ class Maps:
         parser.add_argument(
             "--fabric", default="usual", metavar="NAME", help="default: usual, what each kind usually is"
         )
-        parser.add_argument("--seed", type=whole_number(), default=2000, help="of the garments (default: 2000)")
+        parser.add_argument("--seed", type="seed", default=2000, help="of the garments (default: 2000)")
         parser.add_argument("--out", type=Path, default=Path("maps.png"), metavar="PNG", help="default: maps.png")
 
     @staticmethod

@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from polyfold.cli import whole_number
-
 
 class Train:
     """The verb."""
@@ -18,9 +16,9 @@ class Train:
         parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder; resumed if it exists")
         parser.add_argument("--device", choices=["auto", "cpu", "cuda"], default="auto", help="default: auto")
         parser.add_argument("--data", metavar="DIR", action="append", help="data set instead of the file's; repeatable")
-        parser.add_argument("--seed", type=whole_number(), metavar="N", help="instead of the file's")
+        parser.add_argument("--seed", type="seed", metavar="N", help="instead of the file's")
         parser.add_argument(
-            "--folds", type=whole_number(1), metavar="N", help="first folds of each data set, instead of the file's"
+            "--folds", type="count", metavar="N", help="first folds of each data set, instead of the file's"
         )
 
     @staticmethod

