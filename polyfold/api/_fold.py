@@ -16,7 +16,7 @@ from polyfold.errors import ConfigError
 from polyfold.evaluation import judge
 from polyfold.evaluation._suites import find_task
 from polyfold.garments import Garment
-from polyfold.logs._files import write_atomically
+from polyfold.logs._disk.files import write_atomically
 from polyfold.logs._writing import fold_record, transcript_lines
 from polyfold.plugins.interfaces import RecordsMotion, Simulator
 from polyfold.rollout import run_episode

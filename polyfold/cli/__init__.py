@@ -14,7 +14,7 @@ from typing import Any, NoReturn, Protocol, TextIO
 
 import polyfold
 from polyfold.cli._boundary import answer, flush, speak_any_text
-from polyfold.cli._numbers import TYPES
+from polyfold.cli._options.numbers import TYPES
 from polyfold.errors import did_you_mean
 from polyfold.plugins import catalog, refresh
 

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import polyfold
-from polyfold.cli._components import add_component_options, experiment_from
-from polyfold.cli._garment_source import add_source_options, garment_from
+from polyfold.cli._options.components import add_component_options, experiment_from
+from polyfold.cli._options.garment_source import add_source_options, garment_from
 
 if TYPE_CHECKING:
     from polyfold.types import EpisodeStart, Fidelity, Step

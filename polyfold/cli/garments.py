@@ -7,7 +7,7 @@ from pathlib import Path
 
 import polyfold
 from polyfold import plugins
-from polyfold.cli._components import add_component_options, experiment_from
+from polyfold.cli._options.components import add_component_options, experiment_from
 from polyfold.plugins._fabrics import default_fabric
 
 

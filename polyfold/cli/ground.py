@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 import polyfold
-from polyfold.cli._components import add_component_options, experiment_from
+from polyfold.cli._options.components import add_component_options, experiment_from
 
 OUTLINES = {".json", ".jsonl"}
 

@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from polyfold import plugins
-from polyfold.cli._components import add_component_options, experiment_from
-from polyfold.cli._garment_source import add_source_options, garment_from
+from polyfold.cli._options.components import add_component_options, experiment_from
+from polyfold.cli._options.garment_source import add_source_options, garment_from
 from polyfold.errors import ConfigError
 
 if TYPE_CHECKING:

@@ -20,10 +20,10 @@ from polyfold.config import ComponentSpec
 from polyfold.errors import ConfigError, validation_problem
 from polyfold.errors._hints import file_problem
 from polyfold.logs import _schema_1
-from polyfold.logs._files import write_atomically
+from polyfold.logs._disk.files import write_atomically
+from polyfold.logs._disk.json_lines import Damage, JsonLines
 from polyfold.logs._fingerprint import Fingerprint
 from polyfold.logs._host import this_host
-from polyfold.logs._json_lines import Damage, JsonLines
 from polyfold.logs._records import (
     SCHEMA_VERSION,
     ChangeRecord,

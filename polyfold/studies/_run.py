@@ -18,7 +18,7 @@ from polyfold.evaluation._criteria import criteria
 from polyfold.logs import RunDirectory, StudyEpisodeRecord, exclusive
 from polyfold.logs._components import components_in_use
 from polyfold.logs._dependencies import fingerprint
-from polyfold.logs._files import picture_path, write_atomically
+from polyfold.logs._disk.files import picture_path, write_atomically
 from polyfold.logs._fingerprint import Fingerprint
 from polyfold.logs._records import MetricRecord
 from polyfold.plugins.hookspecs import plural

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from polyfold.cli import _parser, main
-from polyfold.cli._numbers import TYPES
+from polyfold.cli._options.numbers import TYPES
 
 NOT_WHOLE = ("-1", "nan", "1.5", "many", "9" * 30, "9" * 5000, "")
 NO_LENGTH = ("0", "-0.01", "nan", "inf", "long", "")

@@ -14,7 +14,7 @@ import tomli_w
 from polyfold.analysis import Results, table
 from polyfold.analysis._columns import columns_of
 from polyfold.analysis._notes import REFERENCES, noise_floor
-from polyfold.logs._files import write_atomically
+from polyfold.logs._disk.files import write_atomically
 from polyfold.logs._records import MetricRecord
 from polyfold.types import Threshold
 from polyfold.viz._report._charts import percent_axis

@@ -7,7 +7,7 @@ import polyfold
 from polyfold.analysis import open_results
 from polyfold.cli import main
 from polyfold.errors import ConfigError
-from polyfold.logs._files import picture_path
+from polyfold.logs._disk.files import picture_path
 from polyfold.studies._cell import evaluate_cell
 from polyfold.studies._cells import cells
 from polyfold.studies._run import evaluate

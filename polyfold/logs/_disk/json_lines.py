@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
 from polyfold.errors import ConfigError
-from polyfold.logs._files import write_atomically
+from polyfold.logs._disk.files import write_atomically
 
 _BLOCK = 65_536
 

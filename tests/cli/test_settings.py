@@ -1,6 +1,6 @@
 import pytest
 
-from polyfold.cli._components import _value
+from polyfold.cli._options.components import _value
 
 
 @pytest.mark.parametrize(

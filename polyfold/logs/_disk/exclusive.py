@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from polyfold.errors import ConfigError
 from polyfold.errors._hints import file_problem
-from polyfold.logs._files import write_atomically
+from polyfold.logs._disk.files import write_atomically
 
 if TYPE_CHECKING:
     from filelock import BaseFileLock
