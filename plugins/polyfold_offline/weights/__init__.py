@@ -11,9 +11,9 @@ from polyfold.errors import ConfigError
 FOLDER = Path(__file__).parent
 
 SHA256 = {
-    "reader.safetensors": "481836f91e592991c5395908d4c93e7f1bd112504d3ba30f871e4eca0b008288",
+    "reader.safetensors": "74b92005c9f8f3d3527fc28049368aaeab31381e01e7f21540a15bbce9d2fc71",
     "pieces.json": "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037",
-    "words.json": "7162cd6e85689bba96c79c61bc613ad6a33bbf64d9f0c25fe19e6cb394007400",
+    "words.json": "18a037892a50fa19c370a119874ff26cbb68bfed571754bfdd27d7733079b4a7",
 }
 
 SURE = 0.8
