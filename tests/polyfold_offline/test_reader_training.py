@@ -165,6 +165,7 @@ def test_the_command_says_what_is_missing(tmp_path, capsys):
     command = ["train-language", str(tmp_path), "--out", str(tmp_path / "out")]
     assert main([*command, "--encoder", str(tmp_path / "encoder.safetensors")]) == 1
     assert "encoder.safetensors is missing" in capsys.readouterr().err
-    assert main([*command, "--steps", "0"]) == 1
+    with pytest.raises(SystemExit, match="2"):
+        main([*command, "--steps", "0"])
     assert "--steps" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -5,11 +5,20 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
-from polyfold_offline.cloth.folds import CORNERS, EDGES, OPPOSITE_CORNER, PART_NAMES, Fold, say
+from polyfold_offline.cloth.folds import (
+    CORNERS,
+    EDGES,
+    OPPOSITE_CORNER,
+    OPPOSITE_EDGE,
+    PART_NAMES,
+    Fold,
+    edge_name,
+    say,
+)
 from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
 from polyfold_offline.meaning.folding import REASONS, Folding, folds_of
 from polyfold_offline.meaning.program import FRACTIONS, Piece, Program
@@ -54,7 +63,7 @@ class Reader:
         Raises:
             NotUnderstoodError: with the reason, and the nearest thing that can be done where there is one.
         """
-        if (fold := fold_of_subgoal(sentence, garment)) is not None:
+        if (fold := fold_of_subgoal(sentence, garment) or fold_of_plain_order(sentence, garment)) is not None:
             return Folding(garment, folds=[fold])
         readings = self.readings(sentence, garment)
         best = readings[0]
@@ -70,7 +79,7 @@ class Reader:
             return [Reading((Piece("no", "action"),), None, REASONS["action"], 1.0)]
         read = take_lengths(_in_known_words(sentence, garment))
         candidates = likeliest(self._network, self._pieces.read(read.text, garment.family), garment.family)
-        return _together(candidates, read, garment)
+        return _together(candidates if _SECOND_STATEMENT.search(read.text) else _consistent(candidates), read, garment)
 
     def _doubt(self, sentence: str, garment: Garment, readings: Sequence[Reading]) -> str:
         """Why a sentence is refused: the part of it that is in doubt, and what it might mean."""
@@ -98,9 +107,26 @@ _OTHER_WORK = re.compile(
 )
 """Orders that begin with one of these verbs ask for no fold: of 45 such sentences written to learn from, none does."""
 
+_SECOND_STATEMENT = re.compile(
+    r"[,;:!?\n]|\.(?=\s*\w)|\b(?:and|but|while|whilst|yet|although|though|without|also|same|only|just|both|one|once|single|or|"
+    r"stay|stays|keep|keeping|leave|leaving|at|not|don't|never)\b",
+    re.IGNORECASE,
+)
+"""Something that a sentence could contradict itself with."""
+
 _CLAUSES = re.compile(r"[.;:!?\n]+|,\s+(?:and\s+)?(?:then\s+)?|\s+(?:and\s+)?then\s+")
 _MANY_CLAUSES = 8
 _LONG = 25
+
+
+def _consistent(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates of a sentence that makes one statement, which can't contradict itself: the others, made likelier."""
+    kept = [candidate for candidate in candidates if candidate.program[0] != Piece("no", "contradiction")]
+    if not kept:
+        return list(candidates)
+    left = sum(math.exp(candidate.score) for candidate in kept)
+    whole = sum(math.exp(candidate.score) for candidate in candidates)
+    return [replace(candidate, score=candidate.score + math.log(whole / left)) for candidate in kept]
 
 
 def _together(candidates: Sequence[Candidate], read: Read, garment: Garment) -> list[Reading]:
@@ -139,6 +165,24 @@ def fold_of_subgoal(sentence: str, garment: Garment) -> Fold | None:
     return next((fold for fold in _sayable(garment) if say(fold, garment.kind) == words), None)
 
 
+def fold_of_plain_order(sentence: str, garment: Garment) -> Fold | None:
+    """The fold of an order in the fewest words, *fold the left edge onto the right edge*; None of any other.
+
+    The reader learns from no sentence that measures it, and these are just the shortest of them.
+    """
+    order = _PLAIN.fullmatch(" ".join(sentence.split()))
+    for edge in EDGES if order else ():
+        names, others = ({f"{e} edge", f"{e} side", edge_name(garment.kind, e)} for e in (edge, OPPOSITE_EDGE[edge]))
+        if order and order["part"].lower() in names and order["other"].lower() in others:
+            return Fold("half", edge)
+    return None
+
+
+_PLAIN = re.compile(
+    r"(?:please )?(?:fold|bring|put|lay) (?:the )?(?P<part>[a-z ]+?) (?:over |on )?(?:to|onto|on|over|top of) (?:the )?"
+    r"(?P<other>[a-z ]+?)(?:,? please)?[.!]?",
+    re.IGNORECASE,
+)
 _STRIP = re.compile(r"fold the (?P<edge>left|right|top|bottom) strip of (?P<cm>\d+(?:\.\d+)?) cm \w+ward to the rest")
 
 

@@ -8,7 +8,17 @@ from typing import Any
 
 from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
 from polyfold_offline.meaning.folding import folds_of
-from polyfold_offline.meaning.program import CORNERS, EDGES, LENGTHS, OPPOSITE, Piece, Program
+from polyfold_offline.meaning.program import (
+    CORNERS,
+    EDGES,
+    LENGTHS,
+    MANNERS,
+    OPPOSITE,
+    Piece,
+    Program,
+    details_of,
+    places_of,
+)
 from polyfold_offline.reading.tokens import TOKENS, advance, begin, choices
 from polyfold_offline.training.corpus import Example
 from polyfold_offline.training.phrases import phrases
@@ -37,6 +47,9 @@ def _program(family: str, random: Random) -> Program | None:
     if family in _LISTS and random.random() < _LISTED:
         operation, places, detail = random.choice(_LISTS[family])
         return tuple(Piece(operation, place, detail) for place in _some_of(places, random))
+    if random.random() < _EVERYDAY:
+        operation, places, details = random.choice([step for step in _STEPS if _allows(family, *step)])
+        return (Piece(operation, random.choice(places), random.choice(details)),)
     state = begin(family)
     while not state.ended:
         token = random.choice([t for t in choices(state) if TOKENS[t] != "operation no"])
@@ -53,6 +66,10 @@ def _program(family: str, random: Random) -> Program | None:
     except NotUnderstoodError:
         return None if state.pieces[0].operation != "goal" else state.pieces
     return state.pieces
+
+
+def _allows(family: str, operation: str, places: Sequence[str], details: Sequence[str]) -> bool:
+    return set(places) <= set(places_of(family, operation)) and set(details) <= set(details_of(operation, places[0]))
 
 
 def _lengths(program: Program) -> list[str]:
@@ -100,11 +117,17 @@ class _Speaker:
             told = self._list(program)
         else:
             told = "".join(
-                (random.choice(self._phrases["joints"][:-1]) if number else "") + self._step(piece, number)
+                (random.choice(self._phrases["joints"][:-1]) if number else "")
+                + (self._turned(piece) if self._may_turn(piece, program) else self._step(piece, number))
                 for number, piece in enumerate(program)
             )
         text = random.choice(self._phrases["openings"]) + told + random.choice(self._phrases["closings"])
         return text[0].upper() + text[1:] if random.random() < 0.5 else text
+
+    def _may_turn(self, piece: Piece, program: Program) -> bool:
+        """Whether to correct or deny something in this step: only of a part that no other step moves."""
+        other = _MIRRORED.get(piece.place)
+        return self._random.random() < _CORRECTED and other not in {step.place for step in program}
 
     def _list(self, program: Program) -> str:
         """Several parts with one movement, in the order in which they are named, or numbered."""
@@ -179,8 +202,25 @@ class _Speaker:
         return [self._name(piece, end) for end in ends[:2]]
 
 
-_THREE_CORNERS, _LISTED = 0.04, 0.1
+_THREE_CORNERS, _LISTED = 0.04, 0.13
 """Shares of programs that fold in all corners but one, and that move several parts alike."""
+
+_EVERYDAY = 0.35
+"""Share of programs that are one step between parts that have names, said in few words: what people type first."""
+
+_STEPS: Sequence[tuple[str, Sequence[str], Sequence[str]]] = (
+    *[("half", EDGES, ("-",))] * 4,
+    ("half", ("any",), ("-",)),
+    ("mid", ("L", "R"), ("-",)),
+    ("mid", EDGES, ("-",)),
+    *[("centre", CORNERS, ("-",))] * 2,
+    *[("across", CORNERS, ("-",))] * 2,
+    *[("sleeve", ("L", "R"), MANNERS)] * 2,
+)
+"""Everyday steps: operation, places and details; the more usual ones stand more often."""
+
+_CORRECTED = 0.12
+"""Share of the steps of longer sentences that correct or deny something."""
 
 _TOLD_AS_LIST, _NUMBERED, _SHUFFLED = 0.75, 0.35, 0.3
 """Shares of the latter that are told as a list, of lists that are numbered, and of these that are told out of order."""
