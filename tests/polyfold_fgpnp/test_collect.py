@@ -143,8 +143,6 @@ def test_a_mix_is_read_strictly():
         ([], "--out"),
         (["--describe", "nowhere"], "no data set"),
         (["--edge-length", "1", "--out", "x"], "--edge-length"),
-        (["--folds", "0", "--out", "x"], "1 or more"),
-        (["--workers", "0", "--out", "x"], "1 or more"),
         (["--kind", "tent", "--out", "x"], "no garment is called 'tent'"),
         (["--simulator", "xpdb", "--out", "x"], "did you mean 'xpbd'"),
     ],
@@ -153,6 +151,15 @@ def test_wrong_options_are_answered_and_leave_no_folder_behind(arguments, messag
     monkeypatch.chdir(tmp_path)
     assert main(["collect", *arguments]) == 1
     assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("option", ["--folds", "--workers"])
+def test_none_of_what_is_counted_is_wrong_usage(option, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit, match="2"):
+        main(["collect", option, "0", "--out", "x"])
+    assert f"{option}: '0' is not a whole number from 1" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 

@@ -179,7 +179,8 @@ def fold_of_plain_order(sentence: str, garment: Garment) -> Fold | None:
 
 
 _PLAIN = re.compile(
-    r"(?:please )?(?:fold|bring|put|lay) (?:the )?(?P<part>[a-z ]+?) (?:over |on )?(?:to|onto|on|over|top of) (?:the )?"
+    r"(?:please )?(?:fold|bring|put|lay) (?:the )?(?P<part>[a-z ]+?) "
+    r"(?:over |on |across |(?:up|down|left|right)(?:wards?)? )?(?:to|onto|on|over|top of) (?:the )?"
     r"(?P<other>[a-z ]+?)(?:,? please)?[.!]?",
     re.IGNORECASE,
 )
