@@ -58,7 +58,7 @@ def fold(
         RefusedError: if the instruction can't be understood or done; nothing is folded.
         PolyfoldError: if grounding, planning or simulation fail; ``out`` then holds what was done until then.
     """
-    instruction = plain(instruction)
+    instruction = plain(instruction)  # before a folder is made for what is no text
     experiment = (experiment or Experiment()).override(components)
     if isinstance(garment, str):
         garment = named_garment(garment, seed=seed, experiment=experiment)

@@ -28,22 +28,20 @@ def accepted_tasks(name: str, goal: OpenTask) -> tuple[Task, ...]:
 @cache
 def _checked(name: str, target: str) -> Suite:
     found = _loaded(target)
-    for task in found.tasks:
-        _check_points(target, task)
+    _check_points(target, found)
     for goal in found.goals:
         _accepted(name, found, goal)
     return found
 
 
-def _check_points(where: str, task: Task) -> None:
-    """Refuse points that the kind of garment does not have, if the kind is installed."""
-    if task.garment not in plugins.names("garments"):
-        return
-    known = garment_template(task.garment).names
-    for name in sorted(task.points() - set(known)):
-        raise ConfigError(
-            f"{where}: task {task.id}: a {task.garment} has no point {name!r}; {did_you_mean(name, known)}"
-        )
+def _check_points(where: str, found: Suite) -> None:
+    """Refuse points that a kind of garment does not have, of the kinds that are installed."""
+    kinds = {task.garment for task in found.tasks} & set(plugins.names("garments"))
+    known = {kind: garment_template(kind).names for kind in kinds}
+    for task in found.tasks:
+        for name in sorted(task.points() - set(known.get(task.garment, task.points()))):
+            hint = did_you_mean(name, known[task.garment])
+            raise ConfigError(f"{where}: task {task.id}: a {task.garment} has no point {name!r}; {hint}")
 
 
 @cache

@@ -90,8 +90,7 @@ def on_dask(
         workers: size of the cluster that is started on this machine if there is no ``address``.
         address: of the scheduler of a running cluster.
 
-    Raises:
-        ConfigError: as :func:`check_dask` does, or if the cluster is lost on the way.
+    :func:`check_dask` says first whether there is one.
     """
     from distributed import (  # pyright: ignore[reportMissingImports]  (an optional package)
         Client,

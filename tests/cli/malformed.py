@@ -405,6 +405,7 @@ def shown(case):
     """The content of a case on one line."""
     told = case.about or (case.content if isinstance(case.content, str) else json.dumps(str(case.content)))
     told = " / ".join(line.strip() for line in told.splitlines() if line.strip())
+    told = "".join(character if character.isprintable() else f"\\x{ord(character):02x}" for character in told)
     return told if len(told) <= 90 else f"{told[:60]}... ({len(told)} characters)"
 
 

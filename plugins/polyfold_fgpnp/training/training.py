@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import torch
 
 from polyfold.errors import ConfigError
 from polyfold.logs import exclusive
-from polyfold_fgpnp.data.dataset import Dataset, load_dataset
+from polyfold_fgpnp.data.dataset import load_dataset
 from polyfold_fgpnp.policies.weights import Provenance, save_weights
 from polyfold_fgpnp.training.config import TrainingConfig
 from polyfold_fgpnp.training.examples import Examples, make_examples
@@ -41,29 +40,26 @@ def train(config: TrainingConfig, out: str | Path, device: str = "auto", progres
     hashes = tuple(data.description["hash"] for data in sets)
     note = json.dumps({"config": config.plain(), "data": hashes}, indent=2) + "\n"
     _refuse_another(out, note)
-    with exclusive(out):
-        return _trained(config, out, target, sets, hashes, note, progress)
-
-
-def _trained(
-    config: TrainingConfig,
-    out: Path,
-    target: torch.device,
-    sets: Sequence[Dataset],
-    hashes: tuple[str, ...],
-    note: str,
-    progress: bool,
-) -> Path:
-    from tqdm import tqdm
-
     examples = make_examples(
         sets, config.network.variant, config.network.frame, config.reward, config.scale, config.folds
     )
     learned, validation = _split(examples, config.held_out)
     run = Learner(config, learned, target)
-    (out / "training.json").write_text(note, "utf-8")
-    first = run.resume(out / "checkpoint.safetensors")
     provenance = Provenance(config.plain(), hashes, run.mean, run.deviation)
+    with exclusive(out):
+        (out / "training.json").write_text(note, "utf-8")
+        _learn(run, validation, provenance, config, out, progress)
+        save_weights(out / "weights.safetensors", run.network, provenance)
+    return out / "weights.safetensors"
+
+
+def _learn(
+    run: Learner, validation: Examples, provenance: Provenance, config: TrainingConfig, out: Path, progress: bool
+) -> None:
+    """The epochs that are not done yet, each with its metrics, its snapshot if one is wanted, and a checkpoint."""
+    from tqdm import tqdm
+
+    first = run.resume(out / "checkpoint.safetensors")
     with Logs(out, first) as logs, tqdm(total=config.epochs, initial=first, unit="epoch", disable=not progress) as bar:
         for epoch in range(first, config.epochs):
             loss = run.epoch(epoch)
@@ -75,8 +71,6 @@ def _trained(
             run.save(out / "checkpoint.safetensors", epoch + 1)
             bar.set_postfix({name: f"{value:.3f}" for name, value in found.items()}, refresh=False)
             bar.update()
-    save_weights(out / "weights.safetensors", run.network, provenance)
-    return out / "weights.safetensors"
 
 
 def _device(name: str) -> torch.device:
