@@ -50,7 +50,7 @@ class Experiment(BaseModel):
     grounding: ComponentSpec = ComponentSpec(name="polygon")
     planner: ComponentSpec = ComponentSpec(name="hierarchical")
     policy: ComponentSpec = ComponentSpec(name="caso")
-    llm: ComponentSpec = ComponentSpec(name="rules")
+    llm: ComponentSpec = ComponentSpec(name="offline")
     guidance: Literal["steps", "final"] = "steps"
     """What agents that need guidance get: accurate subgoals, or the final goal alone."""
 

@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from polyfold_offline.cloth.creases import crease_of
+from polyfold_offline.cloth.garment import Garment
+from polyfold_offline.cloth.shape import Shape
+from polyfold_offline.reading.reader import Reader
+from polyfold_offline.weights import SURE, checked_folder
 from polyfold_planning.answers.grammar import check_subgoal
 from polyfold_planning.answers.replies import action_in, answer_object, fold_line_in, plan_in, subgoals_in
-from polyfold_rules.clauses.meaning import understand
-from polyfold_rules.shapes.creases import crease_of
-from polyfold_rules.shapes.parts import Garment
-from polyfold_rules.shapes.shape import Shape
 
 from polyfold.errors import ConfigError, RefusedError
 from polyfold.evaluation import suite
@@ -135,14 +136,18 @@ def test_subgoal_examples_parse_and_are_anchored(example):
         check_subgoal(text, template)
 
 
+def meant(subgoal, model):
+    """The one fold that the offline reader takes a subgoal for, on a garment that a prompt tells of."""
+    (fold,) = Reader(checked_folder(), SURE).folds(subgoal, Garment.from_text(model)).folds
+    return fold
+
+
 @pytest.mark.parametrize("example", load_prompt("fold_line").examples, ids=lambda e: e.inputs["subgoal"][:40])
 def test_fold_line_examples_parse_and_agree_with_the_geometry(example):
     line = fold_line_in(answer_object(Reply(example.answer)))
     model = example.inputs["model"]
     shape = Shape.from_text(model)
-    garment = Garment.from_vertices(model["garment"], model["vertices"])
-    (fold,) = understand(example.inputs["subgoal"], garment).folds
-    ideal = crease_of(fold, shape).line
+    ideal = crease_of(meant(example.inputs["subgoal"], model), shape).line
     outline = shape.outline()
     lifted = ideal.distance(outline) > 3
     assert lifted.any()
@@ -171,10 +176,7 @@ def test_an_image_follows_the_text_and_examples_have_none(tmp_path):
 def shown_crease(inputs):
     """The ideal fold line for the inputs of an example, by polygon or keypoints."""
     model = inputs["model"]
-    told = model.get("vertices", model.get("keypoints"))
-    garment = Garment.from_vertices(model["garment"], told if isinstance(told, dict) else model["flat"])
-    (fold,) = understand(inputs["subgoal"], garment).folds
-    return crease_of(fold, Shape.from_text(model)).line
+    return crease_of(meant(inputs["subgoal"], model), Shape.from_text(model)).line
 
 
 @pytest.mark.parametrize("example", load_prompt("fold_line", "keypoints-v2").examples)
@@ -215,10 +217,8 @@ def test_examples_of_whole_plans_fold_as_the_instruction_says():
         model = example.inputs["model"]
         vertices = model["vertices"]
         cloth = FoldedModel(list(vertices.values()), tuple(vertices), {}, kind=model["garment"])
-        garment = Garment.from_vertices(model["garment"], vertices)
         for text, line in plan_in(answer_object(Reply(example.answer)), 10, may_be_empty=False):
-            (fold,) = understand(text, garment).folds
-            ideal = crease_of(fold, Shape.from_text(json.loads(cloth.to_text((400, 400))))).line
+            ideal = crease_of(meant(text, model), Shape.from_text(json.loads(cloth.to_text((400, 400))))).line
             outline = cloth.outline()
             lifted = ideal.distance(outline) > 3
             assert np.hypot(*(line.mirror(outline) - ideal.mirror(outline))[lifted].T).max() < 8

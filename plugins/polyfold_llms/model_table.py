@@ -170,7 +170,7 @@ def check_api_key(name: str, variable: str | None) -> None:
     if missing:
         raise LLMAccessError(
             f"the model {name!r} needs a key in the environment, and {', '.join(missing)} is not set; "
-            f"set it (export {missing[0]}=...), or choose --llm rules, which needs none"
+            f"set it (export {missing[0]}=...), or choose --llm offline, which needs none"
         )
 
 

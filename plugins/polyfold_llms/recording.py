@@ -33,7 +33,7 @@ class RecordLLM:
         model_config = ConfigDict(frozen=True, extra="forbid")
 
         path: Path = Field(description="cassette, JSON lines; appended to")
-        inner: str = Field(default="rules", description="the backend that is recorded, NAME[:ARGUMENT]")
+        inner: str = Field(default="offline", description="the backend that is recorded, NAME[:ARGUMENT]")
         inner_params: dict[str, Any] = Field(default_factory=dict, description="its parameters")
         sample: int = Field(default=0, ge=0, description="number of the answer, to record several to the same request")
 

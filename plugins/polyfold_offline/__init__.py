@@ -1,4 +1,4 @@
-"""The language model ``offline``: reads fold language with a small network, and reasons exactly about cloth.
+"""The backend ``offline``: reads fold language with a small network, and reasons exactly about cloth.
 
 A sentence passes through the packages in this order, each of which imports only those before it:
 

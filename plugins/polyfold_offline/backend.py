@@ -1,7 +1,7 @@
-"""The language model ``offline``: reads sentences with a small network, and reasons exactly about the cloth.
+"""The backend ``offline``: reads sentences with a small network, and reasons exactly about the cloth.
 
-It reads only the rendered messages that any model would get, and answers in the same format, reasoning included. What
-it is not sure to understand it refuses, with the reason.
+It reads only the rendered messages that a language model would get, and answers in the same format, reasoning
+included. What it is not sure to understand it refuses, with the reason.
 """
 
 from __future__ import annotations

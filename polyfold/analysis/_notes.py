@@ -123,8 +123,8 @@ def _made_with(results: Results) -> str:
     return said[:1].upper() + said[1:]
 
 
-_OWN = ("rules", "offline")
-"""Solvers of this project, which are no language models."""
+_OWN = ("offline", "rules")
+"""Solvers of this project, which are no language models; earlier releases had the second."""
 
 
 def _answered(results: Results) -> str:
@@ -133,7 +133,7 @@ def _answered(results: Results) -> str:
         spec = components.get("llm")
         if spec is not None and variant in results.study.variants:
             name = spec.name
-            names[variant] = f"{name} (offline, no language model)" if name in _OWN else name
+            names[variant] = f"{name} (a solver of this project, no language model)" if name in _OWN else name
     if not names:
         return ""
     if len(set(names.values())) == 1:

@@ -49,7 +49,7 @@ def fold(
         out: directory for ``episode.json``, ``transcript.jsonl``, ``filmstrip.png`` and ``fold.gif``.
         experiment: the components; by default those that need no key and no GPU.
         observer: an object whose ``on_episode_start``, ``on_step`` and ``on_episode_end`` are called as it happens.
-        components: single components instead: ``policy="farthest"``, ``fabric="denim"``, ``llm={"name": "rules"}``.
+        components: single components instead: ``policy="farthest"``, ``fabric="denim"``, ``llm={"name": "offline"}``.
 
     Returns:
         The episode; it shows itself in Jupyter.

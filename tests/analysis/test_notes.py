@@ -19,7 +19,7 @@ def results(tmp_path_factory):
 def test_a_table_names_what_answered_the_wordings_the_fabric_and_the_commit(results):
     note = polyfold.table(results).note
     assert "folded geometrically" in note
-    assert "answered by rules (offline, no language model)" in note
+    assert "answered by offline (a solver of this project, no language model)" in note
     assert "wordings 0, 1, 2, 3, 4, of which nothing was tuned on 3, 4" in note
     assert "fabrics poplin" in note
 

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from polyfold_rules.rules import RulesLLM
+from polyfold_offline import OfflineLLM
 
 import polyfold
 from experiments.benchmarks.language.loopback import Sent, answering, completion, serve
@@ -21,20 +21,20 @@ from polyfold.viz import provider_figure
 TASKS = ("square-corner-top_left", "square-corners-top_left-top_right")
 ASKED, ANSWERED, PRICE = 100, 20, 0.25
 
-rules = answering(RulesLLM())
+solver = answering(OfflineLLM())
 
 
 def answer(request):
-    """``paid`` as the rules, with a price; ``hasty`` forgets the JSON of fold lines at first, ``mute`` that of all."""
+    """``paid`` as `offline`, with a price; ``hasty`` forgets the JSON of fold lines at first, ``mute`` that of all."""
     if request.body["model"] == "mute":
         return Sent(completion("no JSON"))
-    body = rules(request).body
+    body = solver(request).body
     if request.body["model"] == "paid":
         usage = {"prompt_tokens": ASKED, "completion_tokens": ANSWERED, "total_tokens": ASKED + ANSWERED}
         return Sent({**body, "usage": {**usage, "cost": PRICE}})
     repaired = len(request.body["messages"]) > 2 and request.body["messages"][-2]["content"] == "no JSON"
     if repaired:
-        return Sent(completion(RulesLLM().complete(request.body["messages"][:-2], {}).text))
+        return Sent(completion(OfflineLLM().complete(request.body["messages"][:-2], {}).text))
     asks_for_line = "fold_line" in body["choices"][0]["message"]["content"]
     return Sent(completion("no JSON")) if asks_for_line else Sent(body)
 
@@ -50,7 +50,7 @@ def folder(tmp_path_factory):
         }
         study = polyfold.Study(
             name="llms", tasks=TASKS, first_seed=2000, instructions="first", edge_length=0.03,
-            variants={"rules": {}, **{name: {"llm": llm} for name, llm in llms.items()}, "noop": {"agent": "noop"}},
+            variants={"offline": {}, **{name: {"llm": llm} for name, llm in llms.items()}, "noop": {"agent": "noop"}},
         )  # fmt: skip
         polyfold.run(study, folder / "run", progress=False, pictures="none")
     return folder / "run"
@@ -68,12 +68,12 @@ def rows(results):
 
 def test_first_answers_and_repaired_ones_are_told_apart(results):
     found = rows(results)
-    for name in ("rules", "paid"):
+    for name in ("offline", "paid"):
         assert found[name]["valid at once %"].startswith("100.0")
     # One decomposition at once for each episode; of its one and two fold lines, none.
     assert found["hasty"]["valid at once %"] == "40.0 [0.5, 98.9]"
     assert found["hasty"]["valid after repair %"] == "100.0 [34.2, 100.0]"
-    assert found["hasty"]["success %"] == found["rules"]["success %"]
+    assert found["hasty"]["success %"] == found["offline"]["success %"]
 
 
 def test_a_model_whose_answers_can_never_be_used_fails_at_the_subgoals(results):
@@ -97,8 +97,8 @@ def test_tokens_and_cost_are_those_of_an_episode_and_latency_that_of_a_call(resu
 def test_what_is_unknown_is_a_dash_and_never_nothing(results):
     found = rows(results)
     assert found["hasty"]["cost [US$]"] == "–"
-    assert found["rules"]["cost [US$]"] == "free"
-    assert found["rules"]["tokens in"] == "–"
+    assert found["offline"]["cost [US$]"] == "free"
+    assert found["offline"]["tokens in"] == "–"
     without_model = set(MEASURES) - {"success %", "subgoal failures %", "fold-line failures %"}
     assert {found["noop"][name] for name in without_model} == {"–"}
     assert "provider (paid)" in provider_table(results).note, "the source of a cost is named"
@@ -203,13 +203,13 @@ def test_accounts_count_questions_and_not_answers():
 
 def test_a_key_that_one_variant_lacks_is_reported_before_the_others_fold(tmp_path, monkeypatch):
     monkeypatch.delenv("OPENAI_API_KEY", raising=False)
-    study = polyfold.Study(name="s", tasks=TASKS, variants={"rules": {}, "keyed": {"llm": "litellm:openai/gpt-4o"}})
+    study = polyfold.Study(name="s", tasks=TASKS, variants={"offline": {}, "keyed": {"llm": "litellm:openai/gpt-4o"}})
     with pytest.raises(LLMAccessError, match="OPENAI_API_KEY"):
         polyfold.run(study, tmp_path / "run", progress=False)
     assert not open_results(tmp_path / "run").records
 
 
-@pytest.mark.parametrize("name", ["rules", "gpt-4o", "gemini-2.5-pro"])
+@pytest.mark.parametrize("name", ["offline", "gpt-4o", "gemini-2.5-pro"])
 def test_the_papers_models_can_be_chosen_one_by_one(name):
     from polyfold.studies import load
     from polyfold.studies._study import with_variants

@@ -113,7 +113,7 @@ def test_a_changed_prompt_misses_with_a_readable_difference(cassette):
 def test_changed_parameters_and_models_miss(cassette):
     messages = [{"role": "user", "content": "a"}]
     create("llms", f"record:{cassette}").complete(messages, {"temperature": 0.0})
-    for params, model in (({"temperature": 0.5}, "rules"), ({"temperature": 0.0}, "other")):
+    for params, model in (({"temperature": 0.5}, "offline"), ({"temperature": 0.0}, "other")):
         with pytest.raises(LLMError, match=r"params: recorded|model: recorded"):
             create("llms", f"replay:{cassette}", {"model": model}).complete(messages, params)
 
@@ -259,7 +259,7 @@ def test_several_models_on_one_cassette_must_be_told_apart(cassette):
 
     request = normalized_request("other", messages, {}, 0)
     append_line(cassette, {**entry, "request": request, "key": request_key(request)})
-    with pytest.raises(ConfigError, match="it holds rules, other"):
+    with pytest.raises(ConfigError, match="it holds offline, other"):
         create("llms", f"replay:{cassette}")
     assert create("llms", f"replay:{cassette}", {"model": "other"}).complete(messages, {}).text
 
@@ -279,11 +279,11 @@ def test_a_difference_names_settings_and_the_number_of_messages():
 
 
 def answered(form, exported):
-    """What a batch service makes of an exported line: the rules' answer, in the form's way."""
+    """What a batch service makes of an exported line: the offline reader's answer, in the form's way."""
     messages = exported.get("messages") or exported.get("body", exported.get("params"))["messages"]
     if form == "anthropic":
         messages = [{"role": "system", "content": exported["params"]["system"]}, *messages]
-    text = create("llms", "rules").complete(messages, {}).text
+    text = create("llms", "offline").complete(messages, {}).text
     if form == "plain":
         return {"key": exported["key"], "text": text}
     if form == "openai":
@@ -326,21 +326,21 @@ def test_a_study_is_filled_in_round_by_round_from_another_program(cassette, tmp_
 
 def test_missing_requests_can_be_asked_of_a_backend(cassette, tmp_path):
     requests = tmp_path / "requests.jsonl"
-    replay = create("llms", f"replay:{cassette}", {"model": "rules", "missing": str(requests)})
+    replay = create("llms", f"replay:{cassette}", {"model": "offline", "missing": str(requests)})
     with pytest.raises(LLMError, match=r"added to .*requests.jsonl"):
         plan(replay)
-    status, out = cli("cassette", "fill", cassette, requests, "--llm", "rules")
+    status, out = cli("cassette", "fill", cassette, requests, "--llm", "offline")
     assert (status, "1 filled in" in out) == (0, True), out
     with pytest.raises(LLMError):
         plan(replay)
     assert len(lines_of(requests)) == 2
-    status, out = cli("cassette", "fill", cassette, requests, "--llm", "rules", "--set", "speed=2")
-    assert (status, "the llm 'rules' has no parameters" in out) == (1, True), out
+    status, out = cli("cassette", "fill", cassette, requests, "--llm", "offline", "--set", "speed=2")
+    assert (status, "the llm 'offline' has no parameters" in out) == (1, True), out
 
 
 def test_failed_and_foreign_answers_are_counted_and_not_recorded(cassette, tmp_path):
     requests, answers = tmp_path / "requests.jsonl", tmp_path / "answers.jsonl"
-    replay = create("llms", f"replay:{cassette}", {"model": "rules", "missing": str(requests)})
+    replay = create("llms", f"replay:{cassette}", {"model": "offline", "missing": str(requests)})
     with pytest.raises(LLMError):
         plan(replay)
     key = lines_of(requests)[0]["key"]

@@ -13,7 +13,7 @@ import pytest
 from loopback_server import FAKE_KEY, GOOD, ROUTES, Script, error, said
 from polyfold_llms import models
 from polyfold_llms.redaction import contains_secret, redact
-from polyfold_rules import RulesLLM
+from polyfold_offline import OfflineLLM
 
 from experiments.benchmarks.language.loopback import Sent, answering, completion, serve
 from polyfold.api import run
@@ -203,13 +203,13 @@ def test_an_echoed_key_is_in_no_error_log_or_repr(server, route, caplog):
 
 
 def test_a_run_with_a_key_leaves_it_nowhere_on_disk(server, tmp_path):
-    rules = RulesLLM()
+    solver = OfflineLLM()
 
     def chatty(request):
         """Refuses once, then answers; both with the key in every place that is kept."""
         if len(server.received) == 1:
             return error(503, f"busy, {FAKE_KEY}")
-        reply = rules.complete(request.body["messages"], {})
+        reply = solver.complete(request.body["messages"], {})
         body = completion(f"Key {FAKE_KEY}. {reply.text}", model=FAKE_KEY, reasoning=f"I saw {FAKE_KEY}")
         return Sent({**body, "id": FAKE_KEY})
 
@@ -258,7 +258,7 @@ def study_of(server, name, **settings):
 
 
 def test_faults_lose_no_finished_episode_and_are_tried_again(server, tmp_path):
-    healthy = answering(RulesLLM())
+    healthy = answering(OfflineLLM())
     study = study_of(server, "faults")
     server.script = lambda request: healthy(request) if len(server.received) <= 2 else error(500)
     first, second = run(study, tmp_path / "run", progress=False).records
@@ -276,7 +276,7 @@ def test_faults_lose_no_finished_episode_and_are_tried_again(server, tmp_path):
 
 def test_the_default_never_imports_litellm():
     code = (
-        "import sys, polyfold; from polyfold.plugins import create, names; names('llms'); create('llms', 'rules'); "
+        "import sys, polyfold; from polyfold.plugins import create, names; names('llms'); create('llms', 'offline'); "
         "import polyfold_llms.litellm_backend, polyfold_llms.recording; "
         "sys.exit('litellm' in sys.modules)"
     )

@@ -30,7 +30,7 @@ from polyfold.prompts import load_prompt
 from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import load_suite
 
-HERE = Path(__file__).parent
+SETS = Path(__file__).parent
 SUITE = load_suite(str(find("tasks", "polyfold70").target))
 
 
@@ -49,10 +49,6 @@ def results(content, planner, llm):
     meant = [outcome.result for outcome in outcomes if outcome.expected]
     never = [outcome.result for outcome in outcomes if not outcome.expected]
     return meant, never
-
-
-SETS = HERE.parent / "polyfold_rules"
-"""Sets that were written for the grammar ``rules``; no sentence below was learned from."""
 
 
 def read_set(name):

@@ -12,7 +12,7 @@ import pytest
 from experiments.benchmarks.language.registers import SENTENCES, accepted_lines, read_sentences
 from polyfold.tasks import load_suite
 
-SETS = Path(__file__).parents[1] / "polyfold_rules"
+SETS = Path(__file__).parent
 REGISTERS = tomllib.loads((SENTENCES.parent / "registers.toml").read_text("utf-8"))["register"]
 USES = ("train", "dev", "final")
 

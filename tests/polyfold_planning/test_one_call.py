@@ -59,7 +59,7 @@ def carried_out(planner, instruction, laid, llm, disturb=None):
 @pytest.mark.parametrize("name", ["square-corners-all", "tshirt-block-right-first", "pants-block-left-thirds"])
 def test_one_call_plans_all_folds(name):
     task = SUITE.task(name)
-    laid, llm = laid_garment(task.garment, SEED), Watched(create("llms", "rules"))
+    laid, llm = laid_garment(task.garment, SEED), Watched(create("llms", "offline"))
     lines = carried_out(create("planners", "plan"), task.instructions[0], laid, llm)
     assert len(llm.messages) == 1
     wanted = fold_lines(task, dict(zip(laid.model.names, laid.model.rest, strict=True)))
@@ -70,7 +70,7 @@ def test_one_call_plans_all_folds(name):
 
 def test_cloth_that_lies_elsewhere_is_planned_anew_with_what_was_done():
     task = SUITE.task("square-corners-all")
-    laid, llm = laid_garment("square", SEED), Watched(create("llms", "rules"))
+    laid, llm = laid_garment("square", SEED), Watched(create("llms", "offline"))
 
     def moved(model):
         return model.transformed(0.2, (18.0, -9.0), (200.0, 200.0))

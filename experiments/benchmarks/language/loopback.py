@@ -1,7 +1,7 @@
-"""A server on this machine that speaks OpenAI's chat API and answers with any backend, ``rules`` unless told otherwise.
+"""A server on this machine that speaks OpenAI's chat API and answers with any backend, by default ``offline``.
 
     with serve() as server:
-        llm = create("llms", "litellm:openai/rules", {"api_base": server.address})
+        llm = create("llms", "litellm:openai/offline", {"api_base": server.address})
 
 With it a whole run goes through litellm's real HTTP path without leaving the machine, for tests and benchmarks.
 """
@@ -150,13 +150,13 @@ def serve(script: Script | None = None, latency_s: float = 0.0) -> Iterator[Serv
     """Listen on a free port of 127.0.0.1 while the context lasts.
 
     Args:
-        script: makes the answers; by default the backend ``rules`` does.
+        script: makes the answers; by default the backend ``offline`` does.
         latency_s: time that each answer takes at least [s].
     """
     if script is None:
-        from polyfold_rules import RulesLLM
+        from polyfold_offline import OfflineLLM
 
-        script = answering(RulesLLM())
+        script = answering(OfflineLLM())
     server = Server(script, latency_s)
     server.start()
     try:

@@ -21,7 +21,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from polyfold_rules import RulesLLM
+from polyfold_offline import OfflineLLM
 
 from experiments.benchmarks.language.loopback import Received, Server, answering, serve
 from polyfold import plugins
@@ -48,7 +48,7 @@ def overhead(route: str, calls: int, latency_s: float, limit: int) -> dict[str, 
     """
     template = plugins.create("garments", "tshirt").template().to_text()
     messages = load_prompt("subgoals").render(template=template, instruction="fold it into a rectangular block")
-    script = answering(RulesLLM())
+    script = answering(OfflineLLM())
     with serve(lambda _: canned, latency_s) as server, ThreadPoolExecutor(calls) as pool:
         llm = plugins.create("llms", f"litellm:{route}", {"api_base": server.address, "concurrency": limit})
         canned = script(Received("", {}, {"messages": messages}))
@@ -98,7 +98,7 @@ class Decisions:
 
 
 def replayed(tasks: Sequence[str], first_seed: int, folder: Path) -> list[dict[str, Any]]:
-    """Run the tasks with the rules, recorded through HTTP, and replayed with the server gone; one worker.
+    """Run the tasks with the offline reader, recorded through HTTP, and replayed with the server gone; one worker.
 
     The first run is only there to compile and to make the references that all of them are scored against.
     """
@@ -108,7 +108,7 @@ def replayed(tasks: Sequence[str], first_seed: int, folder: Path) -> list[dict[s
         recording = {"name": f"record:{cassette}", "inner": f"litellm:{ROUTES[1]}", "inner_params": inner}
         rows = [
             _timed(name, llm, tasks, first_seed, folder, server)
-            for name, llm in (("warm-up", "rules"), ("rules", "rules"), ("record", recording))
+            for name, llm in (("warm-up", "offline"), ("offline", "offline"), ("record", recording))
         ]
     rows.append(_timed("replay", {"name": f"replay:{cassette}"}, tasks, first_seed, folder, server))
     for row in rows:

@@ -227,7 +227,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     part.add_argument("--developed", action="store_true", help="only entries without held_out = true")
     parser.add_argument("--suite", default="polyfold70", help="task suite")
     parser.add_argument("--planner", default="hierarchical")
-    parser.add_argument("--llm", default="rules")
+    parser.add_argument("--llm", default="offline")
     parser.add_argument("--garments", type=int, default=1, help="garments per instruction; all must come out right")
     parser.add_argument("--brief", action="store_true", help="do not list the failures")
     options = parser.parse_args(arguments)

@@ -1,4 +1,4 @@
-"""One fold as the grammar understands it, and how it is said: *fold <part> <direction> to <part> <axis>*."""
+"""One fold, and how it is said: *fold <part> <direction> to <part> <axis>*."""
 
 from __future__ import annotations
 

@@ -24,6 +24,9 @@ FEW_SMALL = 0.6
 MISSED = 3.0
 """A size missed by a factor e is as bad as this many more folds."""
 
+_RAGGED = 2.0
+"""Among ends of a wished size, one that fills less than 4/5 of its rectangle is as bad as this many more folds."""
+
 _SHARES = {
     "three-quarters": 3 / 4, "half": 1 / 2, "third": 1 / 3, "quarter": 1 / 4, "sixth": 1 / 6, "eighth": 1 / 8,
     "sixteenth": 1 / 16,
@@ -55,8 +58,9 @@ def folds_for_goal(goal: Piece, size_cm: tuple[float, float] | None, garment: Ga
 
 
 def _cost(outcome: Outcome, goal: Piece) -> float:
-    share = _SHARES.get(goal.place)
-    return len(outcome.folds) + (MISSED * abs(log(outcome.area / share)) if share else 0.0)
+    if (share := _SHARES.get(goal.place)) is None:
+        return len(outcome.folds)
+    return len(outcome.folds) + MISSED * abs(log(outcome.area / share)) + _RAGGED * (outcome.rectangular < 0.8)
 
 
 def demands(goal: Piece, size_cm: tuple[float, float] | None, garment: Garment) -> Iterator[tuple[str, Test]]:

@@ -47,7 +47,7 @@ def likeliest(network: Network, pieces: list[int], family: str, width: int = WID
     return sorted(ended, key=lambda candidate: -candidate.score)[:width]
 
 
-_HOPELESS = 9.0
+_HOPELESS = 6.0
 """Programs whose probability is less than that of the best by this factor's exponential are not followed."""
 
 

@@ -73,7 +73,7 @@ class Layer(nn.Module):
         x = self.attended(x + self.drop(self.attention(x, x, own, causal=read is not None)))
         if self.across is not None and self.crossed is not None and read is not None:
             x = self.crossed(x + self.drop(self.across(x, read, mask)))
-        return self.done(x + self.drop(self.fall(functional.gelu(self.rise(x)))))
+        return self.done(x + self.drop(self.fall(functional.gelu(self.rise(x), approximate="tanh"))))
 
 
 class ReaderNetwork(nn.Module):

@@ -1,4 +1,4 @@
-"""Our solvers with less than a polygon: keypoints, pictures, and picks instead of fold lines."""
+"""The offline reader with less than a polygon: keypoints, pictures, and picks instead of fold lines."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ SEEN = SimpleNamespace(camera=Camera())
 PICTURE = np.full((400, 400, 3), 90, np.uint8)
 
 
-@pytest.fixture(scope="module", params=["rules", "offline"])
-def solver(request):
-    return create("llms", request.param)
+@pytest.fixture(scope="module")
+def solver():
+    return create("llms", "offline")
 
 
 def mask_of(model, size):

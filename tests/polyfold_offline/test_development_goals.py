@@ -1,4 +1,4 @@
-"""The goals that a grammar may be developed on: well formed, about known tasks, and none from the suites."""
+"""The goals that a reader may learn from: well formed, about known tasks, and none from the suites."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_a_goal_says_what_counts_as_done(goal, suite):
         assert done.get("steps_min", 0) <= done.get("steps_max", 99)
 
 
-def test_no_sentence_is_one_that_the_grammar_is_measured_on(suite):
+def test_no_sentence_is_one_that_the_reader_is_measured_on(suite):
     ambiguous = tomllib.loads(files("polyfold_standard").joinpath("tasks/ambiguous.toml").read_text("utf-8"))
     measured = {goal["text"].lower() for goal in ambiguous["goal"]}
     measured |= {sentence.lower() for task in suite.tasks for sentence in task.instructions}

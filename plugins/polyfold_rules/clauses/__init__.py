@@ -1,1 +1,0 @@
-"""Clauses: the folds that each frame asks for, given those before it."""

@@ -1,1 +1,0 @@
-"""Shapes: which part of the garment a noun phrase means, and where the fold line of a fold lies."""
