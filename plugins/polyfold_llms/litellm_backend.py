@@ -23,6 +23,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.errors import ConfigError, LLMAccessError
 from polyfold.types import Message, Reply
 from polyfold_llms import model_table
+from polyfold_llms.addresses import check_address, proxy_in_the_way
 from polyfold_llms.litellm_client import JSON_ANSWER, as_prompted, carried_format, load_litellm, with_cache_marks
 from polyfold_llms.redaction import contains_secret, redact, redacted
 from polyfold_llms.retries import (
@@ -40,6 +41,7 @@ _OWN_PARAMS = frozenset(
     {"model", "messages", "api_key", "api_base", "base_url", "timeout", "stream"}
     | {"max_retries", "num_retries", "fallbacks", "caching", "extra_headers", "headers"}
 )
+_NEEDED = frozenset({"model", "messages", "timeout", "max_retries", "drop_params"})
 _COUNTED = ("prompt_tokens", "completion_tokens", "total_tokens")
 
 
@@ -58,7 +60,9 @@ class LiteLLM:
         key_env: str | None = Field(
             default=None, description="environment variable with the key, if not the route's own"
         )
-        params: dict[str, Any] = Field(default_factory=dict, description="parameters over the prompt's")
+        params: dict[str, Any] = Field(
+            default_factory=dict, description="parameters over the prompt's; null leaves one of the prompt's out"
+        )
         unlisted: bool = Field(default=False, description="use a model that no table lists")
         timeout_s: float = Field(
             default=180.0, gt=0, description="seconds without a byte after which a try is given up"
@@ -75,6 +79,8 @@ class LiteLLM:
         model_table.check_model_name(config.model, config.api_base, config.unlisted)
         self._config = config
         self._api_base = config.api_base or model_table.default_api_base(config.model)
+        if self._api_base:
+            check_address(self._api_base)
         self._key_variable = config.key_env or (None if self._api_base else model_table.key_variable(config.model))
         if self._key_variable or not self._api_base:
             model_table.check_api_key(config.model, self._key_variable)
@@ -126,7 +132,8 @@ class LiteLLM:
 
     def _request(self, messages: Sequence[Message], params: Mapping[str, Any]) -> dict[str, Any]:
         """What litellm is called with, the key aside."""
-        wanted = model_table.accepted_params(self.model, {**params, **self._config.params})
+        asked = {**params, **self._config.params}
+        wanted = model_table.accepted_params(self.model, {n: v for n, v in asked.items() if v is not None})
         return {
             **carried_format(self.model, wanted),
             "model": self.model,
@@ -145,7 +152,7 @@ class LiteLLM:
         except litellm.ContentPolicyViolationError:
             return None
         except Exception as error:
-            response = _fault(error, litellm)
+            response = _fault(error, litellm, _remedy(error, request, self._api_base))
         # Raised here and not in the handler, so that it does not hold what the provider sent.
         if isinstance(response, TransportError):
             raise response
@@ -175,7 +182,7 @@ class LiteLLM:
         usage = _usage(response)
         cost, source = model_table.call_cost(self.model, usage, getattr(response.usage, "cost", None))
         refusal = _refusal(choice)
-        said = choice.message.content or ""
+        said = _said(choice.message)
         reply = {
             "text": as_prompted(said) if as_schema else said,
             "reasoning": getattr(choice.message, "reasoning_content", None),
@@ -211,19 +218,49 @@ def _sendable(message: Message) -> dict[str, Any]:
     return {**message, "content": "(no answer)"} if empty else dict(message)
 
 
-def _fault(error: Exception, litellm: Any) -> TransportError:
+def _said(message: Any) -> str:
+    """The answer: what a message holds, or else what its call of a tool does, or its reasoning alone.
+
+    Some servers put whole answers of reasoning models, or of those that were taught tools, there and nowhere else.
+    """
+    if message.content:
+        return message.content
+    for call in getattr(message, "tool_calls", None) or ():
+        if arguments := getattr(call.function, "arguments", None):
+            return f"```json\n{arguments}\n```"
+    return getattr(message, "reasoning_content", None) or ""
+
+
+def _remedy(error: Exception, request: Mapping[str, Any], api_base: str | None) -> str:
+    """What helps against a fault that this machine's settings or a parameter may be to blame for; empty if neither."""
+    said = str(error)
+    blamed = next((name for name in request if name in said and name not in _NEEDED), None)
+    if blamed and getattr(error, "status_code", None) in (400, 422):
+        return f"; without it: --set 'llm.params={{\"{blamed}\": null}}', where a substitute can stand beside it"
+    return proxy_in_the_way(api_base)
+
+
+def _fault(error: Exception, litellm: Any, remedy: str) -> TransportError:
     """An error of litellm as a fault, in one line, without secrets."""
     # Where no server answered, the status is an invention of litellm.
     invented = isinstance(error, litellm.APIConnectionError) or "Connection error" in str(error)
     status = None if invented else getattr(error, "status_code", None)
     headers = getattr(error, "litellm_response_headers", None)
     # litellm puts its own classes in front and, for some, a traceback behind.
-    said = _WRAPPING.sub("", str(error)).partition("Traceback (most recent call last)")[0]
+    said = _WRAPPING.sub("", str(error)).partition("Traceback (most recent call last)")[0] or _first_words(error)
     text = " ".join(redact(said).split())
     if len(text) > _LONGEST_FAULT:
         text = text[:_LONGEST_FAULT] + "..."
-    named = f"{status} {text}" if status else text
+    named = (f"{status} {text}" if status else text) + remedy
     return TransportError(status if isinstance(status, int) else None, named, header_value(headers, "retry-after"))
+
+
+def _first_words(error: BaseException) -> str:
+    """What the error said that an error arose from; litellm 1.106.2 loses an error object that came with a 200."""
+    first = error
+    while before := first.__cause__ or first.__context__:
+        first = before
+    return str(getattr(first, "message", "") or first)
 
 
 def _check_answered(response: Any) -> None:

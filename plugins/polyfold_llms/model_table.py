@@ -172,6 +172,8 @@ def check_api_key(name: str, variable: str | None) -> None:
             f"the model {name!r} needs a key in the environment, and {', '.join(missing)} is not set; "
             f"set it (export {missing[0]}=...), or choose --llm offline, which needs none"
         )
+    if variable and not os.environ[variable].strip().isascii():
+        raise LLMAccessError(f"the key in {variable} has a letter that no key has; copy it from the provider once more")
 
 
 def call_cost(name: str, usage: Mapping[str, int], reported: Any) -> tuple[float | None, str]:

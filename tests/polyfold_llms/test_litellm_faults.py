@@ -7,8 +7,9 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from loopback_server import ACCESS, FAKE_KEY, FAULTS, GOOD, REFUSED_REQUESTS, ROUTES, Script, error, line, said
 from polyfold_llms.retries import RetryPolicy, TransportError, call_with_retries
+from polyfold_planning.answers.replies import answer_object
 
-from experiments.benchmarks.language.loopback import serve
+from experiments.benchmarks.language.loopback import Sent, completion, serve
 from experiments.benchmarks.language.understanding import laid_garment, plan_ideally
 from polyfold.errors import ConfigError, LLMAccessError, LLMError, PlanError, RefusedError
 from polyfold.logs._accounts import accounts
@@ -128,6 +129,58 @@ def test_an_unusable_answer_goes_back_to_the_model_with_the_reason(model, server
     assert all(message["content"] for message in server.received[1].body["messages"])
     account = accounts(conversation.calls)["subgoals"]
     assert (account.calls, account.repairs, account.tries) == (2, 1, 2)
+
+
+TOOL = {"id": "1", "type": "function", "function": {"name": "answer", "arguments": '{"subgoals": ["fold it"]}'}}
+
+
+@pytest.mark.parametrize(
+    "message",
+    [{"reasoning_content": GOOD}, {"reasoning": GOOD}, {"tool_calls": [TOOL]}],
+    ids=["reasoning_content", "reasoning", "tool"],
+)
+@pytest.mark.parametrize("content", [None, ""])
+def test_an_answer_that_stands_elsewhere_than_in_the_content_is_found(model, message, content):
+    reply = model(Sent(completion(content, **message))).complete(QUESTION, {})
+    assert "subgoals" in answer_object(reply)
+
+
+@pytest.mark.parametrize(
+    "address", ["127.0.0.1:8000/v1", "htp://host/v1", "http://", "http://host:99999", "a b", "http:/host"]
+)
+def test_what_is_no_address_is_refused_before_anything_is_asked(model, server, address):
+    with pytest.raises(ConfigError, match=r"no address of a server .* for example http://127\.0\.0\.1:8000/v1"):
+        model(api_base=address)
+
+
+def test_a_key_that_can_be_none_is_refused_at_once_and_not_shown(model, monkeypatch):
+    monkeypatch.setenv("OPENROUTER_API_KEY", "sk-ключ")
+    with pytest.raises(LLMAccessError, match="the key in OPENROUTER_API_KEY has a letter that no key has") as caught:
+        model()
+    assert "ключ" not in str(caught.value)
+
+
+def test_a_proxy_before_a_server_of_this_machine_is_named(model, monkeypatch):
+    for name in ("NO_PROXY", "no_proxy"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HTTP_PROXY", "http://127.0.0.1:9")
+    monkeypatch.setenv("http_proxy", "http://127.0.0.1:9")
+    named = r"HTTP_PROXY sends calls to 127\.0\.0\.1 .* set NO_PROXY=127\.0\.0\.1"
+    with serve() as unseen, pytest.raises(LLMError, match=named):  # litellm keeps its client for a server it knows
+        model(tries=1, api_base=unseen.address).complete(QUESTION, {})
+
+
+def test_words_in_an_error_that_came_with_a_200_are_passed_on(model):
+    with pytest.raises(LLMError, match="out of memory"):
+        model(Sent({"id": "x", "choices": [], "error": {"message": "out of memory"}}), tries=1).complete(QUESTION, {})
+
+
+def test_a_refused_parameter_can_be_left_out_as_the_message_says(model, server):
+    picky = model(error(400, "Unsupported parameter: 'max_tokens' is not supported with this model"))
+    with pytest.raises(LLMError, match=r"without it: --set 'llm\.params=\{\"max_tokens\": null\}'"):
+        picky.complete(QUESTION, {"max_tokens": 100})
+    assert model(said(GOOD), params={"max_tokens": None}).complete(QUESTION, {"max_tokens": 100}).text == GOOD
+    assert ["max_tokens" in request.body for request in server.received] == [True, False]
 
 
 @pytest.mark.parametrize(
