@@ -160,14 +160,15 @@ def test_a_key_that_can_be_none_is_refused_at_once_and_not_shown(model, monkeypa
     assert "ключ" not in str(caught.value)
 
 
-def test_a_proxy_before_a_server_of_this_machine_is_named(model, monkeypatch):
+def test_a_proxy_before_a_server_of_this_machine_is_named(server, monkeypatch):
+    """Asked at an address that is new: litellm keeps its client for one that it knows."""
     for name in ("NO_PROXY", "no_proxy"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setenv("HTTP_PROXY", "http://127.0.0.1:9")
-    monkeypatch.setenv("http_proxy", "http://127.0.0.1:9")
+    for name in ("HTTP_PROXY", "http_proxy"):
+        monkeypatch.setenv(name, "http://127.0.0.1:9")
     named = r"HTTP_PROXY sends calls to 127\.0\.0\.1 .* set NO_PROXY=127\.0\.0\.1"
-    with serve() as unseen, pytest.raises(LLMError, match=named):  # litellm keeps its client for a server it knows
-        model(tries=1, api_base=unseen.address).complete(QUESTION, {})
+    with serve() as unseen, pytest.raises(LLMError, match=named):
+        create("llms", "litellm:openai/gpt-4o", {"api_base": unseen.address, "tries": 1}).complete(QUESTION, {})
 
 
 def test_words_in_an_error_that_came_with_a_200_are_passed_on(model):
