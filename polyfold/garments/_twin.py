@@ -14,6 +14,7 @@ from polyfold.garments._outline import Outline
 from polyfold.garments._panels import mesh_panels
 from polyfold.garments._pattern import Pattern
 from polyfold.geometry import polygon_area
+from polyfold.geometry._areas import covered
 
 Floats = NDArray[np.float64]
 
@@ -82,8 +83,7 @@ def repair_outline(outline: ArrayLike) -> Floats:
     points = np.asarray(outline, float)
     if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3 or not np.isfinite(points).all():
         raise GarmentError("an outline needs at least three finite points, shape (M, 2); correct it")
-    repaired = shapely.make_valid(shapely.Polygon(points))
-    parts = [part for part in shapely.get_parts(shapely.get_parts(repaired)) if part.geom_type == "Polygon"]
+    parts = [part for part in shapely.get_parts(shapely.get_parts(covered(points))) if part.geom_type == "Polygon"]
     largest = max(parts, key=lambda part: part.area, default=None)
     if largest is None or largest.area <= 0:
         raise GarmentError("the outline encloses nothing; draw it around the garment once")

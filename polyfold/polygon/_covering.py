@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.errors import GarmentError
+from polyfold.geometry._areas import covered
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -42,10 +43,7 @@ def nearest_point(point: ArrayLike, polygon: ArrayLike) -> Floats:
 
 def shapes(polygons: Iterable[Floats]) -> list[BaseGeometry]:
     """Polygons [px], each of shape (N, 2), as valid shapes: a piece may touch itself where a fold line met a corner."""
-    import shapely
-
-    made = [shapely.Polygon(polygon) for polygon in polygons]
-    return [shape if shape.is_valid else shapely.make_valid(shape) for shape in made]
+    return [covered(polygon) for polygon in polygons]
 
 
 def overlap_area(a: Iterable[BaseGeometry], b: Iterable[BaseGeometry]) -> float:
@@ -78,12 +76,12 @@ def solid_parts(polygon: Floats) -> list[Floats]:
     """Outer rings of the simple polygons that a closed line encloses [px], each of shape (K, 2).
 
     A simple polygon comes back as it is. One that crosses itself, such as the outline of trousers whose legs overlap,
-    falls into parts.
+    comes back as what it covers, in parts where it is pinched.
     """
     import shapely
 
     outline = shapely.Polygon(polygon)
     if outline.is_valid:
         return [polygon]
-    found = shapely.get_parts(shapely.get_parts(shapely.make_valid(outline)))
+    found = shapely.get_parts(shapely.get_parts(covered(outline.exterior.coords)))
     return [shapely.get_coordinates(part.exterior)[:-1] for part in found if isinstance(part, shapely.Polygon)]

@@ -1,11 +1,13 @@
 import numpy as np
 import pytest
+import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from polyfold import geometry
 from polyfold.geometry import FoldLine
+from polyfold.geometry._areas import covered
 from polyfold.geometry._masks import fill_polygon
 
 coordinate = st.floats(-500, 500, allow_nan=False).map(lambda value: round(value, 3))
@@ -115,3 +117,23 @@ def test_the_turn_onto_moved_points_is_the_one_they_were_turned_by(points, angle
     assume(np.ptp(points, axis=0).max() > 1)
     moved = geometry.rotate(points, angle, centre) + shift
     assert geometry.turn_onto(points, moved) == pytest.approx(angle, abs=1e-6)
+
+
+TWICE = [(0, 0), (4, 0), (4, 3), (1, 3), (1, 1), (3, 1), (3, 4), (0, 4)]
+"""A strip that comes round and lies on its own beginning, as the outline of a folded sleeve does: 1 x 2 twice."""
+
+
+def test_what_a_line_goes_around_twice_is_covered_and_what_it_goes_around_once_too():
+    assert covered(TWICE).area == pytest.approx(15.0)
+    assert covered(TWICE[::-1]).area == pytest.approx(15.0)
+    bow = covered([(0, 0), (2, 2), (2, 0), (0, 2)])
+    assert bow.area == pytest.approx(2.0)
+
+
+@given(st.lists(st.tuples(st.integers(0, 40), st.integers(0, 40)), min_size=3, max_size=9, unique=True))
+def test_a_line_covers_all_that_it_goes_around_an_odd_number_of_times(points):
+    """By the rule of odd crossings, which what is filled on a raster follows as well."""
+    shape = covered(points)
+    assert shape.is_valid
+    odd = shapely.make_valid(shapely.Polygon(points))
+    assert odd.difference(shape.buffer(1e-6)).area < 1e-6

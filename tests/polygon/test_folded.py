@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from polyfold.errors import GarmentError, PlanError
 from polyfold.geometry import FoldLine, polygon_area
 from polyfold.polygon import FoldedModel
+from polyfold.polygon._covering import overlap_area, shapes, solid_parts
 
 SQUARE = np.array([(100.0, 300.0), (100.0, 100.0), (300.0, 100.0), (300.0, 300.0)])
 CORNERS = ("bottom_left", "top_left", "top_right", "bottom_right")
@@ -350,3 +351,11 @@ def test_a_corner_folded_in_keeps_the_edges_of_its_flap_where_the_bend_uses_up_c
             (piece,) = outlines[layer]
             assert abs(piece.index("fold1_start") - piece.index("fold1_end")) in (1, len(piece) - 1), "the crease"
         assert {"bottom_left"} < set(outlines["1"][0])
+
+
+def test_cloth_under_both_turns_of_an_outline_counts_as_covered():
+    """A strip that lies on its own beginning, and a patch on just that place."""
+    strip = 10.0 * np.array([(0, 0), (4, 0), (4, 3), (1, 3), (1, 1), (3, 1), (3, 4), (0, 4)])
+    patch = 10.0 * np.array([(1, 1), (3, 1), (3, 3), (1, 3)])
+    assert overlap_area(shapes([patch]), shapes([strip])) == pytest.approx(400.0)
+    assert sum(abs(polygon_area(part)) for part in solid_parts(strip)) == pytest.approx(1500.0)

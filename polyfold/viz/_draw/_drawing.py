@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.geometry import FoldLine, signed_distance, span_on_mask
+from polyfold.geometry._areas import covered
 from polyfold.types import Action, ActionMap, Scene
 from polyfold.viz._draw._canvas import Canvas
 from polyfold.viz._draw._style import ARMS, FOLD_LINE, GOAL, MAP, PAPER, POLYGON, Colour
@@ -39,9 +40,9 @@ def draw_model(canvas: Canvas, model: FoldedModel) -> None:
 
 def _edges_by_visibility(facets: Sequence[Facet]) -> tuple[list[tuple[Floats, bool]], list[tuple[Floats, bool]]]:
     """Edges as (polyline, is a crease), those under other facets first and those in sight second."""
-    from shapely import LineString, Polygon, make_valid, union_all
+    from shapely import LineString, union_all
 
-    polygons = [make_valid(Polygon(facet.polygon)) for facet in facets]
+    polygons = [covered(facet.polygon) for facet in facets]
     hidden, visible, seen = [], [], set()
     for facet in facets:
         above = [polygons[i] for i, other in enumerate(facets) if other.layer > facet.layer]
