@@ -9,7 +9,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from polyfold.errors import ConfigError, validation_problem
-from polyfold.errors._hints import file_problem
+from polyfold.errors._hints import file_problem, toml_problem
 
 __all__ = ["ComponentSpec", "Experiment", "load_experiment", "read_toml", "to_toml"]
 
@@ -82,12 +82,14 @@ def load_experiment(path: str | Path) -> Experiment:
 def read_toml(path: str | Path) -> dict[str, Any]:
     """The content of a TOML file. Raises ConfigError with the file and the line that is wrong."""
     path = Path(path)
+    text = ""
     try:
-        return tomllib.loads(path.read_text("utf-8-sig"))
+        text = path.read_text("utf-8-sig")
+        return tomllib.loads(text)
     except OSError as error:
         raise ConfigError(file_problem(error, path)) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path} is not valid TOML: {error}; correct it") from error
+        raise ConfigError(f"{path} {toml_problem(error, text)}") from error
 
 
 def _validated(settings: dict[str, Any], source: str) -> Experiment:

@@ -16,7 +16,9 @@ def test_toml_round_trip(tmp_path):
     [
         ('polcy = "caso"', "did you mean 'policy'"),
         ("policy = 3", "3 names no component; write a name"),
-        ("policy = [", "not valid TOML"),
+        ("policy = [", "not valid TOML.*; correct it"),
+        (r'llm = "replay:C:\x\new.jsonl"', "not valid TOML.*; write paths with a backslash in single quotes"),
+        (r'llm = {name = "replay", path = "C:\Users\new.jsonl"}', r"single quotes, 'C:\\Users\\new\.jsonl'"),
         ("[policy]\ngamma = 1.0", "policy"),
     ],
 )

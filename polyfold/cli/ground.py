@@ -27,7 +27,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Fit, draw and report."""
     from polyfold import viz
 
-    found = polyfold.ground(arguments.garment, **_source(arguments.source), experiment=experiment_from(arguments))
+    experiment = experiment_from(arguments)
+    found = polyfold.ground(arguments.garment, **_source(arguments.source), experiment=experiment)
     out = arguments.out or Path(f"{arguments.source.stem}-polygon.png")
     out.parent.mkdir(parents=True, exist_ok=True)
     assert found.scene.model is not None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import math
+import re
 import reprlib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
@@ -72,6 +73,13 @@ _FILE_PROBLEMS: tuple[tuple[type[OSError], str], ...] = (
     (FileExistsError, "{} exists and is no folder; choose another path"),
     (PermissionError, "{} may not be read or written by you; change its permissions, or choose another path"),
 )
+
+
+def toml_problem(error: ValueError, text: str) -> str:
+    """Say why a text is no TOML, and what to do, such as ``is not valid TOML: ...; correct it``."""
+    windows = re.search(r'"(?:[\w-]+:)?([A-Za-z]:\\[^"\n]*)"', text)
+    remedy = f"write paths with a backslash in single quotes, '{windows[1]}'" if windows else "correct it"
+    return f"is not valid TOML: {error}; {remedy}"
 
 
 def misplaced_truth(values: Mapping[str, Any], fields: Mapping[str, FieldInfo]) -> str:

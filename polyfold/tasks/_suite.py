@@ -34,6 +34,7 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from polyfold.errors import ConfigError, did_you_mean, validation_problem
+from polyfold.errors._hints import toml_problem
 from polyfold.tasks._goals import OpenTask
 
 
@@ -180,7 +181,7 @@ def load_suite(source: str | Path) -> Suite:
     try:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{where} is not valid TOML: {error}; correct it") from error
+        raise ConfigError(f"{where} {toml_problem(error, text)}") from error
     try:
         return Suite.model_validate(content)
     except ValidationError as error:

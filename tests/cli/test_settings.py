@@ -35,3 +35,9 @@ def test_a_wrong_value_is_named(polyfold, assignment, says):
     result = polyfold("fold", "fold it", "--set", assignment)
     assert result.status == 1
     assert says in result.err
+
+
+def test_a_verb_takes_parameters_of_the_components_that_it_uses_and_of_no_others(polyfold):
+    result = polyfold("ground", "shirt.png", "--garment", "tshirt", "--set", "fabric.thickness=0.002")
+    assert result.status == 1
+    assert "with KIND one of grounding; for example --set grounding.PARAM=VALUE" in result.err

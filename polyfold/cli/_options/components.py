@@ -32,8 +32,9 @@ def add_component_options(parser: argparse.ArgumentParser, kinds: Sequence[str] 
         metavar="KIND.PARAM=VALUE",
         action="append",
         default=[],
-        help="one parameter, for example --set fabric.thickness=0.002; may be repeated",
+        help=f"one parameter, for example --set {_example(kinds)}; may be repeated",
     )
+    parser.set_defaults(component_kinds=tuple(kinds))
 
 
 def experiment_from(arguments: argparse.Namespace) -> Experiment:
@@ -42,19 +43,23 @@ def experiment_from(arguments: argparse.Namespace) -> Experiment:
     given = {name: getattr(arguments, name, None) for name in (*KINDS, "guidance")}
     experiment = experiment.override({name: value for name, value in given.items() if value})
     for assignment in arguments.set:
-        kind, param, value = _parse(assignment)
+        kind, param, value = _parse(assignment, arguments.component_kinds)
         spec: ComponentSpec = getattr(experiment, kind)
         experiment = experiment.override({kind: {"name": spec.name, "params": {**spec.params, param: value}}})
     return experiment
 
 
-def _parse(assignment: str) -> tuple[str, str, Any]:
+def _example(kinds: Sequence[str]) -> str:
+    return "fabric.thickness=0.002" if "fabric" in kinds else f"{kinds[0]}.PARAM=VALUE"
+
+
+def _parse(assignment: str, kinds: Sequence[str]) -> tuple[str, str, Any]:
     path, equals, text = assignment.partition("=")
     kind, dot, param = path.partition(".")
-    if not (equals and dot and kind in KINDS):
+    if not (equals and dot and kind in kinds):
         raise ConfigError(
-            f"--set {assignment!r} does not read KIND.PARAM=VALUE with KIND one of {', '.join(KINDS)}; "
-            "for example --set fabric.thickness=0.002"
+            f"--set {assignment!r} does not read KIND.PARAM=VALUE with KIND one of {', '.join(kinds)}; "
+            f"for example --set {_example(kinds)}"
         )
     return kind, param, _value(text)
 
