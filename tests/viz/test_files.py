@@ -1,5 +1,7 @@
 """Filmstrips, sheets and animations: laid out to fit, written and readable again."""
 
+import subprocess
+import sys
 from io import BytesIO
 
 import numpy as np
@@ -112,3 +114,25 @@ def test_score_sheet_puts_pictures_of_a_case_side_by_side():
 def test_an_empty_sheet_is_refused():
     with pytest.raises(ConfigError, match="at least one picture"):
         viz.score_sheet([])
+
+
+FULL = """
+import resource, sys
+import numpy as np
+from polyfold import viz
+noise = np.random.default_rng(0).integers(0, 255, (2, 90, 90, 3), dtype=np.uint8)
+resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+for write in (lambda: viz.gif(list(noise), "fold.gif"), lambda: viz.save(noise[0], "fold.png")):
+    try:
+        write()
+    except OSError:
+        print("refused")
+"""
+
+
+def test_a_picture_that_does_not_fit_on_the_disk_leaves_what_was_there(tmp_path):
+    for name in ("fold.gif", "fold.png"):
+        (tmp_path / name).write_text("before")
+    child = subprocess.run([sys.executable, "-c", FULL], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert child.stdout.split() == ["refused", "refused"], child.stderr
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"fold.gif": "before", "fold.png": "before"}

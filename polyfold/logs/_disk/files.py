@@ -9,10 +9,14 @@ from pathlib import Path
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Write a file so that a kill leaves either the old content or the new."""
+    """Write a file so that a kill or a full disk leaves either the old content or the new."""
     scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    scratch.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
-    scratch.replace(path)
+    try:
+        scratch.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+        scratch.replace(path)
+    except OSError:
+        scratch.unlink(missing_ok=True)
+        raise
 
 
 def picture_path(key: str) -> str:

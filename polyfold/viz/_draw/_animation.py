@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import ConfigError
+from polyfold.logs._disk.files import write_atomically
 from polyfold.viz._draw._canvas import resized
 
 Image = NDArray[np.uint8]
@@ -41,14 +43,15 @@ def gif(
     durations = [max(20, round(100 / fps) * 10)] * len(frames)
     durations[-1] = round(hold_s * 1000)
     while True:
-        _write(frames, path, durations)
+        encoded = _encoded(frames, durations)
         height, width = frames[0].shape[:2]
-        if path.stat().st_size <= max_bytes or min(height, width) < 64:
+        if len(encoded) <= max_bytes or min(height, width) < 64:
+            write_atomically(path, encoded)
             return path
         frames = [resized(frame, round(width * 0.75), round(height * 0.75)) for frame in frames]
 
 
-def _write(frames: Sequence[Image], path: Path, durations: list[int]) -> None:
+def _encoded(frames: Sequence[Image], durations: list[int]) -> bytes:
     from PIL import Image as Pillow
 
     palette = _palette(frames)
@@ -56,9 +59,10 @@ def _write(frames: Sequence[Image], path: Path, durations: list[int]) -> None:
         Pillow.fromarray(np.ascontiguousarray(frame)).quantize(palette=palette, dither=Pillow.Dither.NONE)
         for frame in frames
     ]
-    indexed[0].save(
-        path, save_all=True, append_images=indexed[1:], duration=durations, loop=0, optimize=True, disposal=1
-    )
+    buffer = BytesIO()
+    how = {"save_all": True, "duration": durations, "loop": 0, "optimize": True, "disposal": 1}
+    indexed[0].save(buffer, format="GIF", append_images=indexed[1:], **how)
+    return buffer.getvalue()
 
 
 def _palette(frames: Sequence[Image]) -> Any:
