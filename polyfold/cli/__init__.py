@@ -94,7 +94,8 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     verbs = parser.add_subparsers(dest="verb", metavar="VERB")
     chosen = next((argument for argument in arguments if not argument.startswith("-")), None)
     # Only the verb that is asked for is imported; the plugins' verbs are looked up when it is not one of ours.
-    known = {**VERBS, **({} if chosen in VERBS else _plugin_verbs())}
+    ours = chosen in VERBS or (chosen is None and "--version" in arguments)
+    known = {**VERBS, **({} if ours else _plugin_verbs())}
     if chosen is not None and chosen not in known:
         parser.error(f"there is no verb {chosen!r}; {did_you_mean(chosen, known)}")
     for verb, (module, summary) in known.items():

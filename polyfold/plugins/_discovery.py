@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 import traceback
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import redirect_stdout
 from importlib.metadata import EntryPoint, entry_points
@@ -65,12 +67,15 @@ def _described(entry_point: EntryPoint) -> Plugin:
 
 
 def _load(catalog: Catalog, manager: pluggy.PluginManager, plugin: Plugin, entry_point: EntryPoint) -> None:
+    clock = time.perf_counter()
     try:
         with redirect_stdout(sys.stderr):  # what a plugin prints is no part of a verb's answer
             target = entry_point.load()
     except (Exception, SystemExit) as error:
         plugin.problems.append(Problem(_load_failure(error, plugin), traceback.format_exc()))
         return
+    finally:
+        _mention_slowness(plugin, time.perf_counter() - clock)
     try:
         _register(manager, plugin, target)
     except (Exception, SystemExit) as error:
@@ -79,6 +84,19 @@ def _load(catalog: Catalog, manager: pluggy.PluginManager, plugin: Plugin, entry
         return
     for kind in (*hookspecs.KINDS, "commands", "prompts"):
         _call_registration(manager, plugin, target, f"register_{kind}", catalog.registrar(kind, plugin))
+
+
+def _mention_slowness(plugin: Plugin, seconds: float) -> None:
+    if seconds > _SLOW and plugin.distribution != BUNDLED:
+        warnings.warn(
+            f"the plugin {plugin.label} took {seconds:.1f} s to import, which every command waits for; it should "
+            f"import what is heavy where it is used (without it: POLYFOLD_DISABLE={plugin.to_disable})",
+            stacklevel=2,
+        )
+
+
+_SLOW = 2.0
+"""An import that takes longer than this [s] is mentioned."""
 
 
 def _register(manager: pluggy.PluginManager, plugin: Plugin, target: Any) -> None:

@@ -305,3 +305,22 @@ def test_workers_know_the_plugins_that_their_parent_knows(installed):
             assert ("elsewhere" in found[1]) == third_party
     finally:
         plugins.refresh(third_party=True)
+
+
+def test_a_plugin_that_keeps_every_command_waiting_is_named(installed, monkeypatch):
+    monkeypatch.setattr("polyfold.plugins._discovery._SLOW", 0.2)
+    installed("sluggard", "import time\ntime.sleep(0.3)\n")
+    with pytest.warns(
+        UserWarning, match=r"'sluggard' \(sluggard 1\.0\) took 0\.\d s to import, .* POLYFOLD_DISABLE=sluggard"
+    ):
+        plugins.Host().names("policies")
+
+
+def test_the_version_is_told_without_loading_plugins(installed, tmp_path, monkeypatch):
+    installed("noisy", "import sys\nprint('loaded', file=sys.stderr)\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    told = {
+        option: subprocess.run([sys.executable, "-m", "polyfold", option], capture_output=True, text=True).stderr
+        for option in ("--help", "--version")
+    }
+    assert told == {"--help": "loaded\n", "--version": ""}
