@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from io import BytesIO
 
 import numpy as np
@@ -10,6 +11,7 @@ from PIL import Image
 
 from polyfold import viz
 from polyfold.errors import ConfigError
+from polyfold.viz._draw._filmstrips import _legend
 
 LONG = "fold the lower hem of the garment up to the shoulder seams along the horizontal line through the middle " * 3
 
@@ -114,6 +116,15 @@ def test_score_sheet_puts_pictures_of_a_case_side_by_side():
 def test_an_empty_sheet_is_refused():
     with pytest.raises(ConfigError, match="at least one picture"):
         viz.score_sheet([])
+
+
+def test_the_legend_explains_all_that_is_drawn(rgb, scene, fold_line, action):
+    (frame,) = frames_of(1, rgb, scene, fold_line, action)
+    told = [meaning for _, meaning, _ in _legend([frame], with_ideal=True)]
+    unseen = [meaning for _, meaning, _ in _legend([replace(frame, scene=None)], with_ideal=False)]
+    of_scenes = {"fitted polygon", "crease", "lifted part, tinted", "ideal outline"}
+    assert of_scenes <= set(told)
+    assert set(told) - set(unseen) - {"covered vertex"} == of_scenes
 
 
 FULL = """

@@ -14,7 +14,7 @@ from polyfold.types import Action, ActionMap, Scene
 from polyfold.viz._draw._canvas import Page, line_height, text_width, wrapped
 from polyfold.viz._draw._overlays import overlay
 from polyfold.viz._draw._saving import save
-from polyfold.viz._draw._style import ARMS, FAINT, FOLD_LINE, GOAL, INK, MAP, RULE, Colour
+from polyfold.viz._draw._style import ARMS, FAINT, FOLD_LINE, GOAL, INK, LIFTED, MAP, POLYGON, RULE, Colour
 
 Image = NDArray[np.uint8]
 
@@ -151,9 +151,11 @@ def _lay_row(page: Page, row: list[_Panel], y: int) -> None:
 
 def _legend(frames: Sequence[Frame], with_ideal: bool) -> list[_Sign]:
     """Sign, meaning and colour of what is drawn somewhere in the strip."""
-    entries: list[_Sign] = []
+    entries = _polygon_signs([frame.scene for frame in frames if frame.scene is not None])
     if any(frame.fold_line is not None for frame in frames):
         entries.append(("▲", "fold line, teeth on the lifted side", FOLD_LINE))
+    if any(frame.fold_line is not None and frame.scene is not None for frame in frames):
+        entries.append(("■", "lifted part, tinted", LIFTED))
     arms = max((frame.action.arms for frame in frames if frame.action is not None), default=0)
     names = ("pick → place",) if arms == 1 else ("first arm, pick → place", "second arm")
     entries += [("●", name, colour) for name, colour in zip(names[:arms], ARMS, strict=False)]
@@ -161,6 +163,17 @@ def _legend(frames: Sequence[Frame], with_ideal: bool) -> list[_Sign]:
         entries += [("●", "value of picking there: lowest", MAP[0]), ("●", "highest", MAP[-2])]
     if with_ideal:
         entries.append(("– –", "ideal outline", GOAL))
+    return entries
+
+
+def _polygon_signs(scenes: Sequence[Scene]) -> list[_Sign]:
+    """What is drawn of the polygons that were fitted."""
+    models = [scene.model for scene in scenes if scene.model is not None]
+    entries = [("●–●", "fitted polygon", POLYGON)] if models else []
+    if any("crease" in facet.edges for model in models for facet in model.facets()):
+        entries.append(("– –", "crease", POLYGON))
+    if any(not state.visible for model in models for state in model.vertices().values()):
+        entries.append(("○", "covered vertex", POLYGON))
     return entries
 
 

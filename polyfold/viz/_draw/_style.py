@@ -16,6 +16,8 @@ RULE: Colour = (206, 210, 216)
 POLYGON: Colour = (22, 28, 48)
 GOAL: Colour = (204, 51, 17)
 FOLD_LINE: Colour = (0, 150, 94)
+LIFTED: Colour = (120, 196, 168)
+"""The fold line's green, thin as it lies on cloth that is lifted."""
 ARMS: tuple[Colour, Colour] = ((245, 133, 24), (214, 39, 130))
 """Orange and magenta: apart in hue for normal sight and in blueness for red-green blindness."""
 
