@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import warnings
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -61,8 +63,22 @@ def load_mask(path: str | Path) -> NDArray[np.bool_]:
 
 
 def load_picture(path: str | Path) -> NDArray[np.uint8]:
-    """Read a photograph as it is meant to be seen, uint8 RGB, shape (H, W, 3)."""
-    return np.asarray(_opened(Path(path)).convert("RGB"))
+    """Read a photograph as it is meant to be seen, uint8 RGB, shape (H, W, 3), not to be written to."""
+    path = Path(path)
+    try:
+        stamp = path.stat().st_mtime_ns
+    except OSError:
+        stamp = 0  # what is wrong is said when it is opened
+    return _decoded(path, stamp)
+
+
+@lru_cache(maxsize=1)
+def _decoded(path: Path, stamp: int) -> NDArray[np.uint8]:
+    """The picture last read, kept: one photo is looked at for what it is, for its outline and to draw on it."""
+    picture = _opened(path)
+    pixels = np.asarray(picture if picture.mode == "RGB" else picture.convert("RGB"))
+    pixels.flags.writeable = False
+    return pixels
 
 
 def outline_from_photo(path: str | Path) -> NDArray[np.float64]:
@@ -154,7 +170,9 @@ def _opened(path: Path) -> Any:
     from PIL import Image, ImageOps, UnidentifiedImageError
 
     try:
-        picture = Image.open(path)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # a large photo is no attack
+            picture = Image.open(path)
         picture.load()
     except UnidentifiedImageError as error:
         raise GarmentError(f"{path} is no picture that can be read; give a PNG or JPEG file") from error
@@ -169,7 +187,8 @@ def _opened(path: Path) -> Any:
             if broken
             else file_problem(error, path)
         ) from error
-    return _in_bytes(ImageOps.exif_transpose(picture))
+    ImageOps.exif_transpose(picture, in_place=True)
+    return _in_bytes(picture)
 
 
 def _in_bytes(picture: Any) -> Any:

@@ -242,3 +242,20 @@ class TestOutlineFile:
     def test_a_missing_file_is_named(self, tmp_path):
         with pytest.raises(GarmentError, match=r"absent\.json"):
             load_outline(tmp_path / "absent.json")
+
+
+def test_a_photo_of_many_megapixels_is_decoded_once_and_warns_of_nothing(tmp_path, monkeypatch, recwarn):
+    """Beyond 89 megapixels Pillow warns of an attack; that bound is lowered here, so that the test is quick."""
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 100_000)
+    picture = np.full((400, 400, 3), 240, np.uint8)
+    picture[shape_mask()] = (40, 60, 120)
+    Image.fromarray(picture).save(tmp_path / "photo.png")
+    opened, was = [], Image.open
+    monkeypatch.setattr(Image, "open", lambda path: opened.append(path) or was(path))
+    from polyfold.api._loaders import is_mask, outline_of
+
+    assert not is_mask(tmp_path / "photo.png")
+    outline, photo = outline_of(image=tmp_path / "photo.png")
+    assert (len(opened), len(recwarn)) == (1, 0)
+    assert (photo == picture).all()
+    assert iou(fill_polygon(outline, 400, 400), shape_mask()) > 0.98
