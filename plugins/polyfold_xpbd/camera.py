@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from polyfold.geometry import Camera
 from polyfold.types import Observation
+from polyfold_xpbd.compiling import kept
 
 TABLE = (236, 236, 232)
 """Colour of the table, RGB."""
@@ -48,7 +48,7 @@ def take_picture(
     return Observation(rgb, out, camera)
 
 
-@njit(cache=True, error_model="numpy")
+@kept
 def _rasterise(screen, normals, triangles, outside_up, colours, depth, shade):
     height, width = depth.shape
     one, zero = np.float32(1.0), np.float32(0.0)
@@ -88,7 +88,7 @@ def _rasterise(screen, normals, triangles, outside_up, colours, depth, shade):
                     shade[y, x, k] = min(np.float32(255.0), light * colour[k])
 
 
-@njit(cache=True, error_model="numpy")
+@kept
 def _average(depth, shade, table, rgb, out):
     """Mean of the samples of each pixel, darkened under the edge of a higher layer; depth of the cloth's samples."""
     height, width = out.shape

@@ -14,6 +14,7 @@ from polyfold.errors import SimulationError
 from polyfold.garments import Garment, Mesh, name_by_pose
 from polyfold.geometry import Camera
 from polyfold.types import Action, Observation, SimState
+from polyfold_xpbd.compiling import interruptible
 
 if TYPE_CHECKING:
     from polyfold_xpbd.solver import Solver
@@ -69,6 +70,7 @@ class XpbdSimulator:
         self._grasped: tuple[int, ...] | None = None
         self._recorder: tuple[Callable[[Observation], None], float] | None = None
 
+    @interruptible()
     def reset(self, garment: Garment, seed: int) -> Observation:
         """Lay the garment flat in a pose drawn from ``seed`` and return the first picture."""
         from polyfold_xpbd.solver import Solver
@@ -90,6 +92,7 @@ class XpbdSimulator:
         self._outside_up = (garment.mesh.panel == 1) | (not self._two_layers)
         return self.observe()
 
+    @interruptible()
     def observe(self) -> Observation:
         """Take a picture."""
         from polyfold_xpbd.camera import take_picture
@@ -99,6 +102,7 @@ class XpbdSimulator:
             self._camera, solver.x, solver.surface_normals(), solver.triangles, self._outside_up, garment.colours
         )
 
+    @interruptible()
     def execute(self, action: Action) -> Observation:
         """Do one fold, let the cloth settle and take a picture.
 
@@ -124,6 +128,7 @@ class XpbdSimulator:
             )
         return self.observe()
 
+    @interruptible()
     def wait(self, seconds: float) -> Observation:
         """Let simulated time pass without touching the cloth and take a picture."""
         solver, _ = self._ready()

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from numba import njit
 
+from polyfold_xpbd.compiling import kept
 from polyfold_xpbd.kernels.contact import resolve, table, warm_start
 from polyfold_xpbd.kernels.guarantee.apart import keep_apart
 from polyfold_xpbd.kernels.guarantee.close import Watch
@@ -38,7 +38,7 @@ def _digest() -> str:
 def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
     """The loop, whose machine code is kept on disk under a digest: numba's key holds what a function closes over."""
 
-    @njit(cache=True, error_model="numpy")
+    @kept
     def advance(
         x, v, previous, start, mobility, normals, edges, rest_lengths, hinges, hinge_weights, elastic, set_curvature,
         rest, corners, panel, use, clock, listed, foreseen, rested, sharp, stray, order,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from polyfold_xpbd.compiling import kept
+
 compiled = njit(error_model="numpy")
 """Without fast maths: reordered sums end differently on another processor, and in machine code read back from a cache.
 
@@ -21,7 +23,7 @@ def shift(vectors, i, scale, x, y, z):
     vectors[i, 2] += scale * z
 
 
-@njit(cache=True, error_model="numpy")
+@kept
 def vertex_normals(x, corners, use, normals):
     """Area-weighted mean normals of the particles into ``normals``, shape (N, 3).
 

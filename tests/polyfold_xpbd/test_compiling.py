@@ -1,0 +1,57 @@
+"""Compiled code that can't be kept, or was damaged where it is kept, costs time and nothing else."""
+
+import warnings
+from importlib import import_module
+
+import pytest
+from polyfold_xpbd.compiling import interruptible, kept
+
+
+@pytest.fixture
+def double(tmp_path, monkeypatch):
+    (tmp_path / "doubling.py").write_text("def double(x):\n    return 2 * x\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(__import__("sys").modules, "doubling", raising=False)
+    return import_module("doubling").double
+
+
+def quietly(function, *arguments):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return function(*arguments)
+
+
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+@pytest.mark.parametrize("content", [b"", b"\x80\x05 no pickle"])
+def test_damaged_code_is_compiled_anew_and_said_once(double, tmp_path, ending, content):
+    assert quietly(kept(double), 2) == 4
+    (damaged,) = tmp_path.rglob(f"*.{ending}")
+    damaged.write_bytes(content)
+    with pytest.warns(UserWarning, match="is damaged .* compiling it anew"):
+        assert kept(double)(2) == 4
+    again = kept(double)
+    assert quietly(again, 2) == 4
+    assert sum(again.stats.cache_hits.values()) == 1
+
+
+def test_without_a_place_to_keep_it_code_is_compiled_with_a_warning(double, monkeypatch):
+    monkeypatch.setattr("numba.core.caching.CacheImpl._locator_classes", [])
+    with pytest.warns(UserWarning, match="no place where compiled code can be kept.* set NUMBA_CACHE_DIR"):
+        compiled = kept(double)
+    assert quietly(compiled, 2) == 4
+
+
+def test_a_full_disk_does_not_stop_what_was_compiled(double, monkeypatch):
+    def full(cache, key, data):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("numba.core.caching.IndexDataCacheFile.save", full)
+    with pytest.warns(UserWarning, match="could not be kept in .*No space left on device"):
+        assert kept(double)(2) == 4
+
+
+def test_an_interrupt_within_compiled_code_is_one():
+    with pytest.raises(KeyboardInterrupt), interruptible():
+        raise SystemError("CPUDispatcher(...) returned a result with an exception set") from KeyboardInterrupt()
+    with pytest.raises(SystemError, match="otherwise"), interruptible():
+        raise SystemError("otherwise")
