@@ -106,11 +106,25 @@ def on_dask(
                 for kind, name, target in plugins.portable():
                     client.run(plugins.register, kind, name, target)
                 running = {client.submit(work, job, pure=False): job for job in jobs}
-                for future, result in as_completed(list(running), with_results=True):
-                    yield running.pop(future), result
+                # With results, as_completed of distributed 2026.8 hands out the error of a lost job as its result.
+                for future in as_completed(list(running)):
+                    yield running.pop(future), _result_from_dask(future)
             finally:
                 if cluster is not None:
                     cluster.close()
+
+
+def _result_from_dask(future: Any) -> Any:
+    """A job's result. Raises ConfigError if the cluster has lost it."""
+    from concurrent.futures import CancelledError
+
+    try:
+        return future.result()
+    except CancelledError as error:
+        said = " ".join(str(error).split())
+        raise ConfigError(
+            f"the Dask cluster was lost ({said}); what is done is kept: run again once its scheduler is back"
+        ) from error
 
 
 def check_dask(address: str | None) -> None:

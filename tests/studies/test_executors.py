@@ -1,8 +1,12 @@
 """Jobs in worker processes."""
 
+from concurrent.futures import Future
+
 import pytest
 
+from polyfold.errors import ConfigError
 from polyfold.studies import in_processes
+from polyfold.studies._executors import _result_from_dask
 
 
 @pytest.mark.parametrize("workers", [1, 2])
@@ -25,3 +29,10 @@ def test_jobs_are_read_as_workers_become_free():
 def test_an_error_of_a_job_ends_the_run_with_that_error():
     with pytest.raises(TypeError):
         list(in_processes(abs, [1, 2, "three"], 2))
+
+
+def test_a_job_that_the_cluster_lost_ends_with_what_to_do():
+    lost = Future()
+    lost.cancel()
+    with pytest.raises(ConfigError, match="the Dask cluster was lost .*: run again once its scheduler is back"):
+        _result_from_dask(lost)
