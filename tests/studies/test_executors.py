@@ -34,5 +34,5 @@ def test_an_error_of_a_job_ends_the_run_with_that_error():
 def test_a_job_that_the_cluster_lost_ends_with_what_to_do():
     lost = Future()
     lost.cancel()
-    with pytest.raises(ConfigError, match="the Dask cluster was lost .*: run again once its scheduler is back"):
+    with pytest.raises(ConfigError, match=r"the Dask cluster was lost .*: run again once its scheduler is back"):
         _result_from_dask(lost)
