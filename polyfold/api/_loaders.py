@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold import plugins
+from polyfold.api._doubts import confidence, doubts
 from polyfold.config import ComponentSpec, Experiment
 from polyfold.errors import GarmentError
 from polyfold.garments import Garment, Pattern
@@ -22,6 +24,9 @@ from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins._fabrics import garment_template
 from polyfold.plugins.interfaces import SewnKind
 from polyfold.types import Observation, Scene
+
+_DOUBTFUL = 0.5
+"""Below this confidence a twin comes with a warning."""
 
 SPAN = 300.0
 """Longest side of a real garment's bounding box in the image it is grounded in [px]."""
@@ -38,12 +43,16 @@ class Grounded:
         rgb: that image, uint8, shape (400, 400, 3).
         outline: the silhouette in the source's pixels, shape (N, 2).
         keypoints: vertex name -> position in the source's pixels, shape (2,).
+        confidence: how sure it is that this is such a garment, 0 to 1; by the fit and by ``doubts``.
+        doubts: what speaks against it, in words.
     """
 
     scene: Scene
     rgb: NDArray[np.uint8]
     outline: Floats
     keypoints: Mapping[str, Floats]
+    confidence: float = 1.0
+    doubts: tuple[str, ...] = ()
 
     def _repr_png_(self) -> bytes:
         from polyfold import viz
@@ -107,6 +116,13 @@ def garment(
     if mesh is not None:
         return replace(_from_mesh(kind, mesh, keypoints, size, edge_length), fabric=cloth)
     found = ground(kind, mask=mask, outline=outline, image=image, experiment=experiment)
+    if found.confidence < _DOUBTFUL:
+        reasons = "; ".join(found.doubts) or f"the polygon is off by {found.scene.residual:.1f} px"
+        warnings.warn(
+            f"this is a {kind!r} with a confidence of {found.confidence:.2f} only ({reasons}); look at what "
+            "`polyfold ground` draws",
+            stacklevel=2,
+        )
     twin = twin_from_outline(found.outline, kind, found.keypoints, pattern_of(kind), size, edge_length)
     return replace(twin, fabric=cloth)
 
@@ -154,12 +170,19 @@ def ground(
     depth = np.full(framed_mask.shape, camera.elevation, np.float32)
     grounding = plugins.create_chosen(experiment or Experiment(), "grounding")
     template = garment_template(kind)
-    scene: Scene = grounding.ground(Observation(rgb, depth, camera), framed_mask, template)
+    seen = Observation(rgb, depth, camera)
+    scene: Scene = grounding.ground(seen, framed_mask, template)
     if scene.model is None:
         raise GarmentError("a real garment needs a grounding with a polygon model; use the grounding 'polygon'")
+
+    def ground_as(other: str) -> Scene:
+        return grounding.ground(seen, framed_mask, garment_template(other))
+
     vertices = scene.model.vertices()
     keypoints = {name: (vertices[name].point - shift) / scale for name in template.names}
-    return Grounded(scene, rgb, silhouette, keypoints)
+    found = list(doubts(kind, scene, None if photo is None else rgb, ground_as))
+    sure = confidence(scene.residual, found)
+    return Grounded(scene, rgb, silhouette, keypoints, sure, tuple(words for _, words in found))
 
 
 def outline_of(

@@ -36,8 +36,12 @@ def run(arguments: argparse.Namespace) -> int:
     keypoints = {name: [round(float(x), 1), round(float(y), 1)] for name, (x, y) in found.keypoints.items()}
     if arguments.json:
         report = {"keypoints": keypoints, "residual_px": round(found.scene.residual, 2), "picture": str(out)}
-        print(json.dumps({**report, "notes": list(found.scene.notes)}))
+        told = {"confidence": round(found.confidence, 2), "doubts": list(found.doubts)}
+        print(json.dumps({**report, **told, "notes": list(found.scene.notes)}))
         return 0
+    print(f"confidence that this is a {arguments.garment}: {found.confidence:.2f}")
+    for doubt in found.doubts:
+        print(f"  doubt: {doubt}")
     print(f"mean distance between polygon and outline: {found.scene.residual:.1f} px at a span of 300 px")
     for name, (x, y) in keypoints.items():
         print(f"  {name:<20} {x:8.1f} {y:8.1f}")
