@@ -7,6 +7,7 @@ import io
 import json
 import os
 from difflib import SequenceMatcher
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -136,9 +137,14 @@ def test_subgoal_examples_parse_and_are_anchored(example):
         check_subgoal(text, template)
 
 
+@cache
+def reader():
+    return Reader(checked_folder(), SURE)
+
+
 def meant(subgoal, model):
     """The one fold that the offline reader takes a subgoal for, on a garment that a prompt tells of."""
-    (fold,) = Reader(checked_folder(), SURE).folds(subgoal, Garment.from_text(model)).folds
+    (fold,) = reader().folds(subgoal, Garment.from_text(model)).folds
     return fold
 
 

@@ -9,8 +9,12 @@ from urllib.request import getproxies_environment, proxy_bypass_environment
 from polyfold.errors import ConfigError
 
 
-def check_address(address: str) -> None:
+def check_address(address: str, source: str) -> None:
     """Refuse what can't be the address of a server.
+
+    Args:
+        address: of the server.
+        source: who gave it, for the message.
 
     Raises:
         ConfigError: with an example.
@@ -22,7 +26,7 @@ def check_address(address: str) -> None:
         good = False
     if not good:
         raise ConfigError(
-            f"{address!r} is no address of a server (api_base); write http:// or https://, host and port, "
+            f"{address!r} is no address of a server ({source}); write http:// or https://, host and port, "
             "for example http://127.0.0.1:8000/v1"
         )
 

@@ -19,6 +19,7 @@ from typing import Any
 from polyfold.errors import ConfigError
 from polyfold.types import Reply
 from polyfold_llms.cassette import recorded_lines
+from polyfold_llms.litellm_client import said_in
 from polyfold_llms.model_table import accepted_params, call_cost, find_model
 from polyfold_llms.redaction import redacted
 from polyfold_llms.request_keys import normalized_request, request_key
@@ -131,7 +132,10 @@ def _openai_answer(content: Mapping[str, Any]) -> Reply | str:
     if choice["finish_reason"] == "content_filter":
         refusal = refusal or "the provider's content filter withheld the answer"
     usage = body.get("usage") or {}
-    return _reply(choice["message"].get("content"), choice["finish_reason"], refusal, usage, body.get("model"))
+    message = choice["message"]
+    arguments = (call["function"]["arguments"] for call in message.get("tool_calls") or ())
+    said = said_in(message.get("content"), arguments, message.get("reasoning_content") or message.get("reasoning"))
+    return _reply(said, choice["finish_reason"], refusal, usage, body.get("model"))
 
 
 def _anthropic_answer(result: Mapping[str, Any]) -> Reply | str:

@@ -24,7 +24,14 @@ from polyfold.errors import ConfigError, LLMAccessError
 from polyfold.types import Message, Reply
 from polyfold_llms import model_table
 from polyfold_llms.addresses import check_address, proxy_in_the_way
-from polyfold_llms.litellm_client import JSON_ANSWER, as_prompted, carried_format, load_litellm, with_cache_marks
+from polyfold_llms.litellm_client import (
+    JSON_ANSWER,
+    as_prompted,
+    carried_format,
+    load_litellm,
+    said_in,
+    with_cache_marks,
+)
 from polyfold_llms.redaction import contains_secret, redact, redacted
 from polyfold_llms.retries import (
     CallResult,
@@ -80,7 +87,7 @@ class LiteLLM:
         self._config = config
         self._api_base = config.api_base or model_table.default_api_base(config.model)
         if self._api_base:
-            check_address(self._api_base)
+            check_address(self._api_base, "api_base" if config.api_base else "told by the environment")
         self._key_variable = config.key_env or (None if self._api_base else model_table.key_variable(config.model))
         if self._key_variable or not self._api_base:
             model_table.check_api_key(config.model, self._key_variable)
@@ -219,24 +226,17 @@ def _sendable(message: Message) -> dict[str, Any]:
 
 
 def _said(message: Any) -> str:
-    """The answer: what a message holds, or else what its call of a tool does, or its reasoning alone.
-
-    Some servers put whole answers of reasoning models, or of those that were taught tools, there and nowhere else.
-    """
-    if message.content:
-        return message.content
-    for call in getattr(message, "tool_calls", None) or ():
-        if arguments := getattr(call.function, "arguments", None):
-            return f"```json\n{arguments}\n```"
-    return getattr(message, "reasoning_content", None) or ""
+    calls = getattr(message, "tool_calls", None) or ()
+    arguments = (getattr(call.function, "arguments", "") for call in calls)
+    return said_in(message.content, arguments, getattr(message, "reasoning_content", None))
 
 
 def _remedy(error: Exception, request: Mapping[str, Any], api_base: str | None) -> str:
     """What helps against a fault that this machine's settings or a parameter may be to blame for; empty if neither."""
     said = str(error)
-    blamed = next((name for name in request if name in said and name not in _NEEDED), None)
-    if blamed and getattr(error, "status_code", None) in (400, 422):
-        return f"; without it: --set 'llm.params={{\"{blamed}\": null}}', where a substitute can stand beside it"
+    blamed = (name for name in request if name not in _NEEDED and re.search(rf"(?<!\w){re.escape(name)}(?!\w)", said))
+    if getattr(error, "status_code", None) in (400, 422) and (name := next(blamed, None)):
+        return f'; to leave it out, add "{name}": null to the params of this backend'
     return proxy_in_the_way(api_base)
 
 

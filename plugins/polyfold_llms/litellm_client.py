@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import logging
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -104,6 +104,19 @@ def as_prompted(text: str) -> str:
     if not isinstance(content, dict) or set(content) != {"reasoning", "answer"}:
         return text  # cut off, or another model than was asked for; the planner will say what is wrong
     return f"{content['reasoning']}\n\n```json\n{content['answer']}\n```"
+
+
+def said_in(content: str | None, tool_arguments: Iterable[str], reasoning: str | None) -> str:
+    """The answer: what a message holds, or else what its call of a tool does, or its reasoning alone.
+
+    Some servers put whole answers of reasoning models, or of those that were taught tools, there and nowhere else.
+    """
+    if content and content.strip():
+        return content
+    for arguments in tool_arguments:
+        if arguments:
+            return f"```json\n{arguments}\n```"
+    return reasoning or content or ""
 
 
 def with_cache_marks(name: str, messages: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:

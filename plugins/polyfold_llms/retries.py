@@ -12,7 +12,7 @@ body cut short
 200 with HTML or broken JSON                    tried again, as a 5xx
 200 with an error object                        by the code in the object, as if it were the status
 200 without choices                             tried again, as a 5xx
-200, no content, no refusal                     an empty answer: back to the model with the reason (repair loop)
+200, nothing said, called or reasoned           an empty answer: back to the model with the reason (repair loop)
 200, ``length``                                 an answer that was cut off: repair loop
 200, a refusal                                  final: RefusedError, nothing is folded
 200 or 400, ``content_filter``                  final: RefusedError

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any
 
 
@@ -15,50 +16,62 @@ def kept(function: Callable[..., Any]) -> Any:
     process, and where what was kept is damaged (numba 0.68 reads an emptied file as a fault) it is compiled anew; both
     with a warning.
     """
-    from numba import njit  # half a second, which those who only look at the simulator's settings need not wait for
+    # Half a second, which those who only look at the simulator's settings need not wait for.
+    from numba import config, njit
 
+    if config.DISABLE_JIT:  # for debuggers and coverage
+        return function
     try:
         dispatcher = njit(cache=True, error_model="numpy")(function)
     except RuntimeError as error:
         if "no locator" not in str(error):
             raise
-        warnings.warn(
-            "there is no place where compiled code can be kept, so each start takes half a minute longer; "
-            "set NUMBA_CACHE_DIR to a folder that can be written to",
-            stacklevel=2,
-        )
+        _mention_no_place()
         return njit(error_model="numpy")(function)
     _forgive(dispatcher._cache)
     return dispatcher
 
 
-def _forgive(cache: Any) -> None:
+@cache
+def _mention_no_place() -> None:
+    warnings.warn(
+        "there is no place where compiled code can be kept, so each start takes half a minute longer; "
+        "set NUMBA_CACHE_DIR to a folder that can be written to",
+        stacklevel=3,
+    )
+
+
+def _forgive(kept_code: Any) -> None:
     """Have a cache of numba's lose what is damaged, and do without what can't be written."""
-    load, save = cache.load_overload, cache.save_overload
+    load, save = kept_code.load_overload, kept_code.save_overload
 
     def load_overload(signature: Any, context: Any) -> Any:
         try:
             return load(signature, context)
+        except OSError:  # not to be read, which is not damaged: others may read it
+            return None
         except Exception as error:  # unpickling raises whatever the damaged bytes make of it
-            warnings.warn(f"compiled code in {cache.cache_path} is damaged ({error}); compiling it anew", stacklevel=2)
-            with _warning_if_unwritable(cache):
-                cache.flush()
+            where = kept_code.cache_path
+            warnings.warn(f"compiled code in {where} is damaged ({error}); compiling it anew", stacklevel=2)
+            with _warning_if_unwritable(kept_code):
+                kept_code.flush()
             return None
 
     def save_overload(signature: Any, data: Any) -> None:
-        with _warning_if_unwritable(cache):
+        with _warning_if_unwritable(kept_code):
             save(signature, data)
 
-    cache.load_overload, cache.save_overload = load_overload, save_overload
+    kept_code.load_overload, kept_code.save_overload = load_overload, save_overload
 
 
 @contextmanager
-def _warning_if_unwritable(cache: Any) -> Iterator[None]:
+def _warning_if_unwritable(kept_code: Any) -> Iterator[None]:
     try:
         yield
-    except OSError as error:
+    except Exception as error:  # of the disk, or of a damaged index that could not be emptied
         warnings.warn(
-            f"compiled code could not be kept in {cache.cache_path} ({error}); set NUMBA_CACHE_DIR to another folder",
+            f"compiled code could not be kept in {kept_code.cache_path} ({error}); "
+            "set NUMBA_CACHE_DIR to another folder",
             stacklevel=3,
         )
 

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold import plugins
-from polyfold.errors import GroundingError, PluginError
 from polyfold.plugins._fabrics import garment_template
 from polyfold.types import Scene
 
@@ -19,8 +18,11 @@ HALF_SURE = 8.0
 AS_WELL = 3.0
 """A simpler polygon that is no farther than this from the outline beside a kind's own [px] explains it as well.
 
-Of 6 real t-shirts the rectangle is 5.2 to 7.8 px farther than their own polygon; a table's top is none.
+Of 6 real t-shirts the rectangle is 5.2 to 7.8 px farther than their own polygon; of 5 towels at most 3.
 """
+
+CLEAR = 5.5
+"""Nothing explains an outline that it is farther from than this [px]; of 5 real towels a rectangle is at most 5.0."""
 
 OTHER_COLOUR = 60.0
 """Colours farther than this from the cloth's [RGB units] are another thing's, or a print's."""
@@ -29,13 +31,14 @@ OTHER_SHARE = 0.08
 """... if they cover at least this share of it."""
 
 
-def simpler_kinds(kind: str) -> list[str]:
-    """Kinds whose polygons have fewer vertices than a kind's, those with the fewest first."""
-    counts = {}
+def plain_kinds(kind: str) -> list[str]:
+    """Kinds with four corners or fewer, and fewer than a kind has: plain cloths, which tables and boxes look like."""
+    most = min(4, len(garment_template(kind).names) - 1)
+    found = []
     for name in plugins.names("garments"):
-        with suppress(PluginError):  # a broken plugin's kind is no help here
-            counts[name] = len(garment_template(name).names)
-    return sorted((name for name in counts if counts[name] < counts[kind]), key=lambda name: counts[name])
+        with suppress(Exception):  # a plugin's kind that fails is no help here, and no reason to stop
+            found += [name] if len(garment_template(name).names) <= most else []
+    return found
 
 
 def doubts(
@@ -49,15 +52,19 @@ def doubts(
         rgb: the photo that it was found in, uint8, shape (H, W, 3); None for masks and outlines.
         ground_as: grounds the same outline as another kind.
     """
-    for other in simpler_kinds(kind):
-        with suppress(GroundingError):
-            residual = ground_as(other).residual
-            if residual < scene.residual + AS_WELL:
-                yield 0.3, (
-                    f"{other!r} explains the outline as well (off by {residual:.1f} px, {kind!r} by "
-                    f"{scene.residual:.1f}); is it {kind!r} at all?"
-                )
-                break
+    fits = {}
+    for other in plain_kinds(kind):
+        with suppress(Exception):
+            fits[other] = ground_as(other).residual
+    other = min(fits, key=lambda name: fits[name], default="")
+    if other and fits[other] < min(scene.residual + AS_WELL, CLEAR):
+        yield (
+            0.3,
+            (
+                f"{other!r} explains the outline as well (off by {fits[other]:.1f} px, {kind!r} by {scene.residual:.1f}); "
+                f"is it {kind!r} at all?"
+            ),
+        )
     if rgb is not None and (share := _other_share(rgb, scene.mask)) >= OTHER_SHARE:
         yield 0.5, f"{share:.0%} of it have another colour: a large print, or the cloth lies on what was outlined"
 

@@ -77,7 +77,8 @@ _FILE_PROBLEMS: tuple[tuple[type[OSError], str], ...] = (
 
 def toml_problem(error: ValueError, text: str) -> str:
     """Say why a text is no TOML, and what to do, such as ``is not valid TOML: ...; correct it``."""
-    windows = re.search(r'"(?:[\w-]+:)?([A-Za-z]:\\[^"\n]*)"', text)
+    of_escapes = str(error).startswith(("Unescaped", "Invalid hex", "Escaped character"))
+    windows = re.search(r'"((?:[\w-]+:)?[A-Za-z]:\\(?!\\)[^"\n]*)"', text) if of_escapes else None
     remedy = f"write paths with a backslash in single quotes, '{windows[1]}'" if windows else "correct it"
     return f"is not valid TOML: {error}; {remedy}"
 

@@ -66,15 +66,19 @@ def load_picture(path: str | Path) -> NDArray[np.uint8]:
     """Read a photograph as it is meant to be seen, uint8 RGB, shape (H, W, 3), not to be written to."""
     path = Path(path)
     try:
-        stamp = path.stat().st_mtime_ns
+        found = path.stat()
+        stamp = found.st_ino, found.st_mtime_ns, found.st_size
     except OSError:
-        stamp = 0  # what is wrong is said when it is opened
-    return _decoded(path, stamp)
+        stamp = ()  # what is wrong is said when it is opened
+    return _decoded(path, Path.cwd(), stamp)
 
 
 @lru_cache(maxsize=1)
-def _decoded(path: Path, stamp: int) -> NDArray[np.uint8]:
-    """The picture last read, kept: one photo is looked at for what it is, for its outline and to draw on it."""
+def _decoded(path: Path, folder: Path, stamp: tuple[int, ...]) -> NDArray[np.uint8]:
+    """The picture last read: one photo is looked at for what it is, for its outline and to draw on it.
+
+    It stays in memory until the next one is read, 3 bytes a pixel.
+    """
     picture = _opened(path)
     pixels = np.asarray(picture if picture.mode == "RGB" else picture.convert("RGB"))
     pixels.flags.writeable = False

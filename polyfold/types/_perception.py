@@ -43,7 +43,7 @@ class Scene:
         text: what a language model is shown: a strict JSON object with ``garment``, ``image`` (``width``, ``height``
             and, where known, ``px_per_cm``) and ``vertices``: name -> ``[x, y]`` [px] or ``{"at": [x, y], ...}``.
             Points without names stand in ``keypoints`` as a list. After a fold ``flat`` says where vertices lay before
-            the first one, if elsewhere. The offline solver refuses a text without any of them.
+            the first one, if elsewhere. ``offline`` refuses a text without any of them.
         residual: Chamfer distance between model and contour [px]; NaN without a model.
         notes: things the caller should know (a displaced garment, an ambiguous silhouette).
         picture: what a vision model is shown beside the text: colours, uint8, shape (H, W, 3); None for none.

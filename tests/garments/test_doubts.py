@@ -16,7 +16,9 @@ SHIRT = [(300, 200), (500, 200), (560, 260), (510, 290), (500, 420), (300, 420),
 
 
 def of_kind(kind):
-    return [np.array(max(entry["mask"], key=len)) for entry in REAL if entry["garment"] == kind]
+    found = [np.array(max(entry["mask"], key=len)) for entry in REAL if entry["garment"] == kind]
+    assert len(found) >= 4
+    return found
 
 
 @pytest.fixture
@@ -48,6 +50,24 @@ def test_real_towels_that_are_called_t_shirts_are_not(outline):
     assert found.confidence < 0.5
     assert "explains the outline as well" in found.doubts[0]
     assert polyfold.ground("rectangle", outline=outline).confidence > 0.6
+
+
+@pytest.mark.parametrize("outline", of_kind("shorts"))
+def test_real_shorts_are_doubted_for_their_fit_alone(outline):
+    assert polyfold.ground("pants", outline=outline).doubts == ()
+
+
+def test_a_kind_that_fails_is_no_reason_to_stop(monkeypatch):
+    class Broken:
+        @staticmethod
+        def template():
+            raise ZeroDivisionError
+
+    polyfold.plugins.register("garments", "broken", Broken)
+    try:
+        assert polyfold.ground("tshirt", outline=of_kind("tshirt")[0]).confidence > 0.8
+    finally:
+        polyfold.plugins.unregister("garments", "broken")
 
 
 def test_a_table_that_is_taken_for_a_shirt_is_doubted_and_what_lies_on_it_is_mentioned(table):

@@ -311,7 +311,7 @@ def test_a_plugin_that_keeps_every_command_waiting_is_named(installed, monkeypat
     monkeypatch.setattr("polyfold.plugins._discovery._SLOW", 0.2)
     installed("sluggard", "import time\ntime.sleep(0.3)\n")
     with pytest.warns(
-        UserWarning, match=r"'sluggard' \(sluggard 1\.0\) took 0\.\d s to import, .* POLYFOLD_DISABLE=sluggard"
+        UserWarning, match=r"'sluggard' \(sluggard 1\.0\) took \d+\.\d s to import, .* POLYFOLD_DISABLE=sluggard"
     ):
         plugins.Host().names("policies")
 

@@ -139,7 +139,7 @@ TOOL = {"id": "1", "type": "function", "function": {"name": "answer", "arguments
     [{"reasoning_content": GOOD}, {"reasoning": GOOD}, {"tool_calls": [TOOL]}],
     ids=["reasoning_content", "reasoning", "tool"],
 )
-@pytest.mark.parametrize("content", [None, ""])
+@pytest.mark.parametrize("content", [None, "", "\n"])
 def test_an_answer_that_stands_elsewhere_than_in_the_content_is_found(model, message, content):
     reply = model(Sent(completion(content, **message))).complete(QUESTION, {})
     assert "subgoals" in answer_object(reply)
@@ -151,6 +151,12 @@ def test_an_answer_that_stands_elsewhere_than_in_the_content_is_found(model, mes
 def test_what_is_no_address_is_refused_before_anything_is_asked(model, server, address):
     with pytest.raises(ConfigError, match=r"no address of a server .* for example http://127\.0\.0\.1:8000/v1"):
         model(api_base=address)
+
+
+def test_an_address_that_the_environment_tells_is_checked_as_well(monkeypatch):
+    monkeypatch.setenv("HOSTED_VLLM_API_BASE", "127.0.0.1:8000")
+    with pytest.raises(ConfigError, match=r"no address of a server \(told by the environment\)"):
+        create("llms", "litellm:hosted_vllm/any")
 
 
 def test_a_key_that_can_be_none_is_refused_at_once_and_not_shown(model, monkeypatch):
@@ -178,7 +184,7 @@ def test_words_in_an_error_that_came_with_a_200_are_passed_on(model):
 
 def test_a_refused_parameter_can_be_left_out_as_the_message_says(model, server):
     picky = model(error(400, "Unsupported parameter: 'max_tokens' is not supported with this model"))
-    with pytest.raises(LLMError, match=r"without it: --set 'llm\.params=\{\"max_tokens\": null\}'"):
+    with pytest.raises(LLMError, match='to leave it out, add "max_tokens": null to the params'):
         picky.complete(QUESTION, {"max_tokens": 100})
     assert model(said(GOOD), params={"max_tokens": None}).complete(QUESTION, {"max_tokens": 100}).text == GOOD
     assert ["max_tokens" in request.body for request in server.received] == [True, False]

@@ -4,7 +4,7 @@ import warnings
 from importlib import import_module
 
 import pytest
-from polyfold_xpbd.compiling import interruptible, kept
+from polyfold_xpbd.compiling import _mention_no_place, interruptible, kept
 
 
 @pytest.fixture
@@ -36,9 +36,29 @@ def test_damaged_code_is_compiled_anew_and_said_once(double, tmp_path, ending, c
 
 def test_without_a_place_to_keep_it_code_is_compiled_with_a_warning(double, monkeypatch):
     monkeypatch.setattr("numba.core.caching.CacheImpl._locator_classes", [])
-    with pytest.warns(UserWarning, match="no place where compiled code can be kept.* set NUMBA_CACHE_DIR"):
+    _mention_no_place.cache_clear()
+    with pytest.warns(UserWarning, match=r"no place where compiled code can be kept.* set NUMBA_CACHE_DIR"):
         compiled = kept(double)
     assert quietly(compiled, 2) == 4
+    assert quietly(kept(double), 2) == 4, "it is said once"
+
+
+def test_where_nothing_is_compiled_functions_stay_as_they_are(double, monkeypatch):
+    monkeypatch.setattr("numba.config.DISABLE_JIT", 1)
+    assert kept(double) is double
+
+
+def test_an_index_that_a_full_disk_emptied_does_not_end_a_run(double, tmp_path, monkeypatch):
+    def full(cache, path):
+        raise OSError(28, "No space left on device")
+
+    assert kept(double)(2) == 4
+    (index,) = tmp_path.rglob("*.nbi")
+    index.write_bytes(b"")
+    monkeypatch.setattr("numba.core.caching.IndexDataCacheFile._open_for_write", full)
+    with pytest.warns(UserWarning, match="is damaged") as told:
+        assert kept(double)(2) == 4
+    assert sum("could not be kept" in str(warning.message) for warning in told) == 2
 
 
 def test_a_full_disk_does_not_stop_what_was_compiled(double, monkeypatch):

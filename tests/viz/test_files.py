@@ -141,6 +141,19 @@ for write in (lambda: viz.gif(list(noise), "fold.gif"), lambda: viz.save(noise[0
 """
 
 
+def test_a_folder_in_a_picture_s_place_is_named_as_it_was_given(rgb, tmp_path):
+    with pytest.raises(IsADirectoryError) as caught:
+        viz.save(rgb, tmp_path)
+    assert caught.value.filename == str(tmp_path)
+
+
+def test_a_picture_that_is_a_link_stays_one(rgb, tmp_path):
+    (tmp_path / "link.png").symlink_to(tmp_path / "real.png")
+    viz.save(rgb, tmp_path / "link.png")
+    assert (tmp_path / "link.png").is_symlink()
+    assert (tmp_path / "real.png").is_file()
+
+
 def test_a_picture_that_does_not_fit_on_the_disk_leaves_what_was_there(tmp_path):
     for name in ("fold.gif", "fold.png"):
         (tmp_path / name).write_text("before")
