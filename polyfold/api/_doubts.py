@@ -58,13 +58,8 @@ def doubts(
             fits[other] = ground_as(other).residual
     other = min(fits, key=lambda name: fits[name], default="")
     if other and fits[other] < min(scene.residual + AS_WELL, CLEAR):
-        yield (
-            0.3,
-            (
-                f"{other!r} explains the outline as well (off by {fits[other]:.1f} px, {kind!r} by {scene.residual:.1f}); "
-                f"is it {kind!r} at all?"
-            ),
-        )
+        beside = f"off by {fits[other]:.1f} px, {kind!r} by {scene.residual:.1f}"
+        yield 0.3, f"{other!r} explains the outline as well ({beside}); is it {kind!r} at all?"
     if rgb is not None and (share := _other_share(rgb, scene.mask)) >= OTHER_SHARE:
         yield 0.5, f"{share:.0%} of it have another colour: a large print, or the cloth lies on what was outlined"
 
