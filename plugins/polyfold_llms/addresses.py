@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ipaddress import ip_address
 from urllib.parse import urlsplit
-from urllib.request import getproxies_environment, proxy_bypass_environment
+from urllib.request import getproxies, proxy_bypass
 
 from polyfold.errors import ConfigError
 
@@ -38,8 +38,8 @@ def proxy_in_the_way(address: str | None) -> str:
     """What to say of a proxy that calls to a server of this machine are sent to; empty if there is none."""
     parts = urlsplit(address or "")
     host = parts.hostname or ""
-    proxies = getproxies_environment()
-    if not _is_here(host) or not {parts.scheme, "all"} & proxies.keys() or proxy_bypass_environment(host):
+    proxies = getproxies()
+    if not _is_here(host) or not {parts.scheme, "all"} & proxies.keys() or proxy_bypass(host):
         return ""
     name = parts.scheme if parts.scheme in proxies else "all"
     return f"; {name.upper()}_PROXY sends calls to {host} through a proxy: set NO_PROXY={host} to reach it directly"

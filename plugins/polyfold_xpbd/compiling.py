@@ -19,7 +19,7 @@ def kept(function: Callable[..., Any]) -> Any:
     # Half a second, which those who only look at the simulator's settings need not wait for.
     from numba import config, njit
 
-    if config.DISABLE_JIT:  # for debuggers and coverage
+    if getattr(config, "DISABLE_JIT", 0):  # for debuggers and coverage
         return function
     try:
         dispatcher = njit(cache=True, error_model="numpy")(function)
@@ -28,7 +28,7 @@ def kept(function: Callable[..., Any]) -> Any:
             raise
         _mention_no_place()
         return njit(error_model="numpy")(function)
-    _forgive(dispatcher._cache)
+    _forgive(dispatcher._cache)  # pyright: ignore[reportAttributeAccessIssue]
     return dispatcher
 
 

@@ -40,7 +40,7 @@ class Schedule:
         every: steps between checkpoints.
     """
 
-    steps: int = 5000
+    steps: int = 6000
     size: int = 32
     rate: float = 1e-4
     decoder_rate: float = 3e-4
