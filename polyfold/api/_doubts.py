@@ -12,6 +12,9 @@ from polyfold import plugins
 from polyfold.plugins._fabrics import garment_template
 from polyfold.types import Scene
 
+DOUBTFUL = 0.5
+"""Below this confidence a twin comes with a warning."""
+
 HALF_SURE = 8.0
 """A polygon so far from the outline on average [px at a span of 300 px] is as likely wrong as right."""
 

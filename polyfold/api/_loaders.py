@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold import plugins
-from polyfold.api._doubts import confidence, doubts
+from polyfold.api._doubts import DOUBTFUL, confidence, doubts
 from polyfold.config import ComponentSpec, Experiment
 from polyfold.errors import GarmentError
 from polyfold.garments import Garment, Pattern
@@ -24,9 +24,6 @@ from polyfold.geometry._masks import fill_polygon
 from polyfold.plugins._fabrics import garment_template
 from polyfold.plugins.interfaces import SewnKind
 from polyfold.types import Observation, Scene
-
-_DOUBTFUL = 0.5
-"""Below this confidence a twin comes with a warning."""
 
 SPAN = 300.0
 """Longest side of a real garment's bounding box in the image it is grounded in [px]."""
@@ -116,7 +113,7 @@ def garment(
     if mesh is not None:
         return replace(_from_mesh(kind, mesh, keypoints, size, edge_length), fabric=cloth)
     found = ground(kind, mask=mask, outline=outline, image=image, experiment=experiment)
-    if found.confidence < _DOUBTFUL:
+    if found.confidence < DOUBTFUL:
         reasons = "; ".join(found.doubts) or f"the polygon is off by {found.scene.residual:.1f} px"
         warnings.warn(
             f"this is a {kind!r} with a confidence of {found.confidence:.2f} only ({reasons}); look at what "

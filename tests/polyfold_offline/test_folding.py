@@ -122,3 +122,9 @@ def test_every_subgoal_is_anchored_and_means_what_it_says(kind):
         text = say(fold, kind)
         check_subgoal(text, template)
         assert fold_of_subgoal(text, garment(kind)) == fold
+
+
+@pytest.mark.parametrize("share", ["third", "quarter"])
+def test_a_shirt_of_a_wished_size_ends_as_a_rectangle(share):
+    actions = [fold.action for fold in folded("tshirt", f"goal {share}")]
+    assert actions[:2] == ["sleeve", "sleeve"], "a shirt halved twice is as small, and ragged"
