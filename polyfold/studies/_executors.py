@@ -91,6 +91,9 @@ def on_dask(
         address: of the scheduler of a running cluster.
 
     :func:`check_dask` says first whether there is one.
+
+    Raises:
+        ConfigError: if the cluster is lost on the way.
     """
     from distributed import (  # pyright: ignore[reportMissingImports]  (an optional package)
         Client,
