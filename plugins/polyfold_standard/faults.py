@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,13 +45,14 @@ class FaultySimulator:
         self._config = config
         self._inner: Any = create("simulators", config.inner, config.inner_params)
         self._grasped: tuple[int, ...] | None = None
+        self._short: tuple[float, ...] | None = None
 
     def reset(self, garment: Garment, seed: int) -> Observation:
         """Lay the garment flat; the faults follow from the seed and from all that is done.
 
         Agents that act alike meet the same faults, and different tasks on one garment meet different ones.
         """
-        self._history, self._grasped = zlib.crc32(str(seed).encode()), None
+        self._history, self._grasped, self._short = zlib.crc32(str(seed).encode()), None, None
         return self._inner.reset(garment, seed)
 
     def observe(self) -> Observation:
@@ -67,11 +68,12 @@ class FaultySimulator:
         holds = self._rng.random(action.arms) >= self._config.miss
         slips, displaced = self._rng.random(2) < (self._config.slip, self._config.displace)
         share = self._rng.uniform(0.3, 0.8) if slips else 1.0
-        self._grasped = (0,) * action.arms
+        self._grasped, self._short = (0,) * action.arms, (0.0,) * action.arms
         if holds.any():
             picks, places = action.picks[holds], action.places[holds]
             self._inner.execute(Action(picks, picks + share * (places - picks)))
-            self._grasped = _among(holds, self._inner.state().grasped)
+            after = self._inner.state()
+            self._grasped, self._short = _among(holds, after.grasped), _among(holds, after.short)
         if displaced:
             self._displace()
         return self.observe()
@@ -93,11 +95,11 @@ class FaultySimulator:
 
     def state(self) -> SimState:
         """Privileged state."""
-        return replace(self._inner.state(), grasped=self._grasped)
+        return replace(self._inner.state(), grasped=self._grasped, short=self._short)
 
     def restore(self, state: SimState) -> None:
         """Return to a state of this garment."""
-        self._grasped = state.grasped
+        self._grasped, self._short = state.grasped, state.short
         self._inner.restore(state)
 
     def close(self) -> None:
@@ -105,10 +107,12 @@ class FaultySimulator:
         self._inner.close()
 
 
-def _among(holds: NDArray[np.bool_], grasped: tuple[int, ...] | None) -> tuple[int, ...] | None:
-    """What all arms hold, where the simulator was told of those that hold alone, bool, shape (arms,)."""
-    if grasped is None:
+_Told = TypeVar("_Told", int, float)
+
+
+def _among(holds: NDArray[np.bool_], told: tuple[_Told, ...] | None) -> tuple[_Told, ...] | None:
+    """What is told of all arms, where the simulator was told of those that hold alone, bool, shape (arms,)."""
+    if told is None:
         return None
-    plies = np.zeros(len(holds), int)
-    plies[holds] = grasped
-    return tuple(plies.tolist())
+    of_those = iter(told)
+    return tuple(next(of_those) if held else type(told[0])(0) for held in holds)

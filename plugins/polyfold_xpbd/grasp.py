@@ -49,6 +49,7 @@ class Grasp:
         starts, ends: pick and place points of every arm [m], shape (arms, 3).
         plies: how many each arm holds, shape (arms,); 0 where its grip is empty.
         height: of the thickest held packet, its plies pressed together [m].
+        short: how far each arm's end is from the place that was asked for [m], shape (arms,).
     """
 
     particles: NDArray[np.uint32]
@@ -58,6 +59,7 @@ class Grasp:
     ends: NDArray[np.float64]
     plies: NDArray[np.int64]
     height: float
+    short: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +126,7 @@ def take_hold(
         ends,
         np.rint(plies).astype(np.int64),
         thickness * float(plies.max()),
+        np.zeros(action.arms),
     )
 
 
@@ -145,6 +148,12 @@ def _plies(held: NDArray[np.int64], positions: NDArray[np.float64], triangles: N
     return 1.0 + float(np.median(inside.sum(axis=1)))
 
 
+def directions(grasp: Grasp) -> NDArray[np.float64]:
+    """Horizontal unit vectors from pick to place, shape (arms, 2); zeros where they are one."""
+    span = (grasp.ends - grasp.starts)[:, :2]
+    return span / np.maximum(np.hypot(*span.T), 1e-9)[:, None]
+
+
 def plan_motion(grasp: Grasp, time_step: float) -> Motion:
     """Arcs from pick to place, all arms arriving together, followed by a short hold."""
     span = (grasp.ends - grasp.starts)[:, :2]
@@ -158,9 +167,8 @@ def plan_motion(grasp: Grasp, time_step: float) -> Motion:
     path = np.empty((len(progress), len(span), 3))
     path[:, :, :2] = grasp.starts[:, :2] + across[:, None, None] * span
     path[:, :, 2] = grasp.starts[:, 2] + progress[:, None] * (grasp.ends - grasp.starts)[:, 2] + up[:, None] * height
-    directions = span / np.maximum(distance, 1e-9)[:, None]
     turns = np.stack([np.cos(np.pi * progress), np.sin(np.pi * progress)], axis=1)
-    return Motion(path.astype(np.float32), turns.astype(np.float32), directions.astype(np.float32))
+    return Motion(path.astype(np.float32), turns.astype(np.float32), directions(grasp).astype(np.float32))
 
 
 def _arc(roundness: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

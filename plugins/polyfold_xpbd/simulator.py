@@ -26,7 +26,8 @@ class XpbdSimulator:
     The garment is laid with its bounding circle in the middle of the image, turned by an angle drawn from the seed.
     Grippers hold all layers within 15 mm of a pick, or farther on a coarser mesh, and lay them down at the place
     along an arc. A pick off the cloth grasps nothing: its arm moves empty, and if no arm holds cloth the fold changes
-    nothing. The state says how many plies each arm held. With ``guaranteed``, plies that did not at reset never pass
+    nothing. Two arms that hold the same cloth part no farther than it reaches, and stop short of their places then. The
+    state says how many plies each arm held and how far short it stopped. With ``guaranteed``, plies that did not at reset never pass
     through each other, however the grippers pull; one that would have to drag cloth through cloth lags behind.
     """
 
@@ -45,6 +46,13 @@ class XpbdSimulator:
             default=1,
             ge=0,
             description="seed of the order in which particles and contacts are visited; 0 is the mesh's own",
+        )
+        max_strain: float = Field(
+            default=0.1,
+            ge=0.0,
+            le=0.25,
+            description="two arms give way before the cloth between them is stretched by more than this share: clothing "
+            "fabrics stretch by 2 to 15 % under 5 N/cm (Kawabata and Niwa 1989, doi 10.1080/00405008908659184)",
         )
         guaranteed: bool = Field(
             default=False,
@@ -68,6 +76,7 @@ class XpbdSimulator:
         self._solver: Solver | None = None
         self._garment: Garment | None = None
         self._grasped: tuple[int, ...] | None = None
+        self._short: tuple[float, ...] | None = None
         self._recorder: tuple[Callable[[Observation], None], float] | None = None
 
     @interruptible()
@@ -80,7 +89,8 @@ class XpbdSimulator:
         centre = (flat.min(axis=0) + flat.max(axis=0)) / 2
         radius = float(np.hypot(*(flat - centre).T).max())
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        self._garment, self._seed, self._actions, self._grasped = garment, seed, [], None
+        self._garment, self._seed, self._actions = garment, seed, []
+        self._grasped = self._short = None
         self._camera = Camera.framing(2 * radius / self.config.fill)
         self._order, mesh = _renumbered(garment.mesh, self.config.order)
         self._rank = np.argsort(self._order)
@@ -114,9 +124,10 @@ class XpbdSimulator:
         action.check_inside(self._camera)
         before = self.state()
         self._actions.append(np.concatenate([action.picks, action.places]).round(3).tolist())
-        grasp = solver.grip(action, self._camera)
-        self._grasped = (0,) * action.arms if grasp is None else tuple(grasp.plies.tolist())
-        if grasp is not None and not self._undone_if_broken_off(before, lambda: solver.fold(grasp, *self._frames())):
+        grip = solver.grip(action, self._camera, self.config.max_strain)
+        self._grasped = (0,) * action.arms if grip is None else tuple(grip.grasp.plies.tolist())
+        self._short = (0.0,) * action.arms if grip is None else tuple(grip.grasp.short.round(4).tolist())
+        if grip is not None and not self._undone_if_broken_off(before, lambda: solver.fold(grip, *self._frames())):
             reproduction = (
                 f"garment {garment.name!r} (seed {garment.seed}), reset seed {self._seed}, {self.config!r}, "
                 f"picks and places so far {self._actions}"
@@ -147,7 +158,7 @@ class XpbdSimulator:
             **solver.memory(), "actions": tuple(self._actions), "guaranteed": self.config.guaranteed,
         }  # fmt: skip
         positions, velocities = solver.positions()[self._rank], solver.velocities()[self._rank]
-        return SimState(positions, velocities, self._keypoints, self._camera, extra, self._grasped)
+        return SimState(positions, velocities, self._keypoints, self._camera, extra, self._grasped, self._short)
 
     def restore(self, state: SimState) -> None:
         """Return to a state of this garment, so that several picks can be tried from one."""
@@ -164,7 +175,8 @@ class XpbdSimulator:
             )
         solver.set_state(state.positions[self._order], state.velocities[self._order], state.extra)
         self._camera, self._keypoints = state.camera, state.keypoints
-        self._actions, self._grasped = list(state.extra.get("actions", ())), state.grasped
+        self._actions = list(state.extra.get("actions", ()))
+        self._grasped, self._short = state.grasped, state.short
 
     def close(self) -> None:
         """Release the solver; call :meth:`reset` to go on."""

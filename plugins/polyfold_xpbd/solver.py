@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from polyfold.garments import Fabric, Mesh
 from polyfold.geometry import Camera
 from polyfold.types import Action
+from polyfold_xpbd.giving import give_way
 from polyfold_xpbd.grasp import Grasp, plan_motion, take_hold
 from polyfold_xpbd.kernels.guarantee.close import watch_memory
 from polyfold_xpbd.kernels.loop import DIVERGED, SETTLED, advance
 from polyfold_xpbd.kernels.vectors import vertex_normals
 from polyfold_xpbd.model import ClothModel, build_model
-from polyfold_xpbd.tethers import TetherMap
+from polyfold_xpbd.tethers import TetherMap, Tethers
 
 SLACK = 0.002
 """How far particles may stray from where they were foreseen before near pairs are listed again [m]."""
@@ -66,6 +67,13 @@ def bent_normal(thickness: float) -> float:
 def _constraints(mesh: Mesh, fabric: Fabric) -> tuple[ClothModel, TetherMap]:
     """What a mesh is held together by; studies lay the same few garments again and again."""
     return build_model(mesh, fabric), TetherMap(mesh)
+
+
+class Grip(NamedTuple):
+    """What the grippers hold, where they take it, and the tethers that this puts on the cloth."""
+
+    grasp: Grasp
+    tethers: Tethers
 
 
 class Solver:
@@ -184,16 +192,27 @@ class Solver:
         """Hold particles, indices of shape (K,), where they are until another state is set."""
         self._mobility[particles] = 0.0
 
-    def grip(self, action: Action, camera: Camera) -> Grasp | None:
-        """What the grippers would hold; None if there is no cloth under any pick."""
-        return take_hold(action, self.positions(), self.triangles, camera, self._thickness, self._model.longest_edge)
+    def grip(self, action: Action, camera: Camera, strain: float) -> Grip | None:
+        """What the grippers would hold, and how far it lets them go; None if there is no cloth under any pick.
 
-    def fold(self, grasp: Grasp, on_frame: Callable[[], None] | None, interval: float) -> bool:
+        Args:
+            action: picks and places [px].
+            camera: which point of the table a pixel is.
+            strain: share by which cloth between two arms may be longer than at rest.
+        """
+        grasp = take_hold(action, self.positions(), self.triangles, camera, self._thickness, self._model.longest_edge)
+        if grasp is None:
+            return None
+        tethers = self._tethers.tie(grasp.particles, grasp.arms, grasp.offsets)
+        return Grip(give_way(grasp, tethers, strain), tethers)
+
+    def fold(self, grip: Grip, on_frame: Callable[[], None] | None, interval: float) -> bool:
         """Move what the grippers hold to the places and let it come to rest. False if it diverged."""
+        grasp, tethers = grip
         motion = plan_motion(grasp, self.dt)
         self._mobility[grasp.particles] = 0.0
         held = (grasp.particles, grasp.offsets, grasp.arms, motion.directions, motion.path, motion.turns)
-        held += self._tethers.tie(grasp.particles, grasp.arms, grasp.offsets)
+        held += tethers
         alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval)
         self._mobility[:] = self._model.lightness
         return alive and self.settle(LONGEST_SETTLING, on_frame, interval)

@@ -7,7 +7,7 @@ of one comparison per particle and arm.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,19 @@ DETOUR = 1.04
 SLACK = 1.002
 
 
+class Tethers(NamedTuple):
+    """How far the cloth reaches from what is held.
+
+    Attributes:
+        particles, anchors: indices, uint32, shape (K,).
+        lengths: longest distance between them [m], float32, shape (K,).
+    """
+
+    particles: NDArray[np.uint32]
+    anchors: NDArray[np.uint32]
+    lengths: NDArray[np.float32]
+
+
 class TetherMap:
     """Distances within each panel of a garment."""
 
@@ -30,14 +43,8 @@ class TetherMap:
         self._layer, self._seam = np.asarray(mesh.layer), np.asarray(mesh.seam)
         self._graphs = [self._graph(np.asarray(mesh.triangles)[mesh.panel == panel]) for panel in range(mesh.layers)]
 
-    def tie(
-        self, held: NDArray[np.uint32], arms: NDArray[np.uint32], offsets: NDArray[np.float32]
-    ) -> tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.float32]]:
-        """Tethers from each arm's innermost held particle of a panel to the panel's particles.
-
-        Returns:
-            Particle, anchor and longest distance [m] per tether, shape (K,) each.
-        """
+    def tie(self, held: NDArray[np.uint32], arms: NDArray[np.uint32], offsets: NDArray[np.float32]) -> Tethers:
+        """Tethers from each arm's innermost held particle of a panel to the panel's particles."""
         from scipy.sparse.csgraph import dijkstra
 
         particles, anchors, lengths = [], [], []
@@ -56,7 +63,7 @@ class TetherMap:
                 lengths.append(SLACK * np.maximum(along, straight))
         reach = np.concatenate(lengths)
         known = np.isfinite(reach)
-        return (
+        return Tethers(
             np.concatenate(particles)[known].astype(np.uint32),
             np.concatenate(anchors)[known].astype(np.uint32),
             reach[known].astype(np.float32),

@@ -64,7 +64,9 @@ class Printer:
         )
         times = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
         number = f"{step.index + 1} (again)" if step.retry else f"{step.index + 1}"
-        self._flush(f"  fold {number}: {where}, {step.action.arms} arm(s){_empty_grips(step)}; {times}")
+        self._flush(
+            f"  fold {number}: {where}, {step.action.arms} arm(s){_empty_grips(step)}{_stopped_short(step)}; {times}"
+        )
 
     def _flush(self, line: str) -> None:
         print(line)
@@ -75,6 +77,15 @@ def _empty_grips(step: Step) -> str:
     picks = enumerate(zip(step.after.grasped or (), step.action.picks, strict=False), 1)
     empty = [f"arm {arm} at ({pick[0]:.0f}, {pick[1]:.0f})" for arm, (plies, pick) in picks if plies == 0]
     return f", no cloth in the grip of {' and '.join(empty)}" if empty else ""
+
+
+def _stopped_short(step: Step) -> str:
+    short = [f"arm {arm} {1000 * way:.0f} mm" for arm, way in enumerate(step.after.short or (), 1) if way >= _SHORT]
+    return f", the cloth reaches no farther: {' and '.join(short)} short of its place" if short else ""
+
+
+_SHORT = 0.005
+"""Stops that are nearer to their places than this are not worth a word [m]."""
 
 
 def _how_to_name(fidelity: Fidelity) -> str:

@@ -51,6 +51,7 @@ class StepRecord(LogRecord):
         retry: whether it repeats the fold before, which was seen to have failed.
         values_picks: whether the policy rated every place to pick.
         grasped: how many plies each arm held, 0 for an empty grip; None if the simulator doesn't say.
+        short: how far from its place each arm stopped because the cloth reached no farther [m]; None likewise.
     """
 
     subgoal: str | None
@@ -62,6 +63,7 @@ class StepRecord(LogRecord):
     retry: bool = False
     values_picks: bool = False
     grasped: tuple[int, ...] | None = None
+    short: tuple[float, ...] | None = None
 
 
 class CallRecord(LogRecord):

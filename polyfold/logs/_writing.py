@@ -131,6 +131,7 @@ def _step(step: Step) -> StepRecord:
         retry=step.retry,
         values_picks=step.action_map is not None,
         grasped=step.after.grasped,
+        short=step.after.short,
     )
 
 

@@ -26,6 +26,7 @@ class SimState:
         extra: simulator-specific arrays that :meth:`Simulator.restore` needs.
         grasped: how many plies each arm held in the fold that led here, 0 for an empty grip; None before a fold, or if
             the simulator doesn't say.
+        short: how far from its place each arm stopped because the cloth reached no farther [m]; None as of ``grasped``.
     """
 
     positions: Floats
@@ -34,6 +35,7 @@ class SimState:
     camera: Camera
     extra: Mapping[str, Any] = field(default_factory=dict)
     grasped: tuple[int, ...] | None = None
+    short: tuple[float, ...] | None = None
 
     def keypoint_positions(self) -> dict[str, Floats]:
         """Named keypoint -> position [m], shape (3,)."""

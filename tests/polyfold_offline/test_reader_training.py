@@ -15,10 +15,10 @@ from polyfold_offline.reading.tokens import INDEX, advance, begin, spell
 from polyfold_offline.training.batches import Batches, collate
 from polyfold_offline.training.corpus import Example, make_example, read_corpus
 from polyfold_offline.training.generator import generate
-from polyfold_offline.training.learning import Learner, Schedule, frequent_words, train
-from polyfold_offline.training.network import DEEP, INNER, WIDTH
+from polyfold_offline.training.learning import Learner, Schedule, begin_with_reader, frequent_words, train
+from polyfold_offline.training.network import DEEP, INNER, WIDTH, ReaderNetwork, load_pretrained
 from polyfold_offline.training.variation import vary
-from polyfold_offline.training.weights import export
+from polyfold_offline.training.weights import export, reader_weights
 from polyfold_offline.weights import FOLDER
 
 from polyfold.cli import main
@@ -65,7 +65,10 @@ def examples():
 
 def learner(pieces: Pieces, examples: list[Example]) -> Learner:
     batches = Batches(examples, examples, pieces, PLAN.size, PLAN.seed)
-    return Learner(batches, pieces.vocabulary, encoder(pieces.vocabulary), PLAN)
+    torch.manual_seed(PLAN.seed)
+    network = ReaderNetwork(pieces.vocabulary)
+    load_pretrained(network, encoder(pieces.vocabulary))
+    return Learner(batches, network, PLAN)
 
 
 @pytest.fixture(scope="module")
@@ -110,6 +113,33 @@ def test_numpy_reads_as_torch_does(pieces, trained, tmp_path):
         assert np.abs(found - row).max() < 0.1  # bytes instead of floats
         token, state = following, advance(state, following)
     assert state.ended
+
+
+def test_a_trained_reader_learns_from_sentences_of_ones_own(tmp_path, capsys):
+    told = [
+        {"garment": "square", "meaning": "centre TL", "text": f"zibble the top left corner in {n} times"}
+        for n in range(8)
+    ]
+    (tmp_path / "mine").mkdir()
+    for register in "abcd":
+        (tmp_path / "mine" / f"{register}.jsonl").write_text("\n".join(map(json.dumps, told)), "utf-8")
+    command = ["train-language", str(tmp_path / "mine"), "--from", str(FOLDER), "--out", str(tmp_path / "out")]
+    assert main([*command, "--steps", "1"]) == 0
+    assert "reader.safetensors" in capsys.readouterr().out
+    words = json.loads((tmp_path / "out" / "words.json").read_text("utf-8"))
+    assert words["zibble"] == 32
+    assert words.keys() > json.loads((FOLDER / "words.json").read_text("utf-8")).keys()
+    before, after = reader_weights(FOLDER), reader_weights(tmp_path / "out")
+    assert before.keys() == after.keys()
+    assert 0 < max((after[name] - before[name]).abs().max() for name in before) < 0.05
+
+
+def test_what_is_no_trained_reader_is_named(tmp_path):
+    with pytest.raises(ConfigError, match=r"reader\.safetensors can't be read"):
+        begin_with_reader(tmp_path)
+    export({"x": torch.zeros(2, 2)}, tmp_path / "reader.safetensors", {})
+    with pytest.raises(ConfigError, match="holds no reader to go on from"):
+        begin_with_reader(tmp_path)
 
 
 def test_a_written_meaning_names_the_lengths_of_its_text():

@@ -198,6 +198,34 @@ def test_the_state_says_how_many_plies_each_arm_held(simulator, garments):
     assert simulator.state().grasped == (2, 0)
 
 
+def test_arms_that_hold_the_same_cloth_part_no_farther_than_it_reaches(simulator, garments):
+    simulator.reset(garments["square"], 2)
+    simulator.execute(half_of_square(simulator))
+    assert simulator.state().short == (0.0, 0.0)
+    simulator.reset(garments["square"], 2)
+    rest = strain(garments["square"].mesh, simulator.state().positions)
+    corners = simulator.state().keypoint_pixels()
+    middle = (corners["top_left"] + corners["top_right"]) / 2
+    beside = np.array([[-40.0, 0.0], [40.0, 0.0]])
+    simulator.execute(Action(middle + beside, np.array([[5.0, 5.0], [395.0, 5.0]])))
+    after = simulator.state()
+    assert after.short is not None
+    assert min(after.short) > 0.05
+    assert np.abs(strain(garments["square"].mesh, after.positions) - rest).max() < 0.25
+    simulator.restore(after)
+    assert simulator.state().short == after.short
+
+
+def test_two_grips_on_one_spot_go_together(simulator, garments):
+    simulator.reset(garments["pants"], 2)
+    pick = simulator.state().keypoint_pixels()["crotch"] - [0.0, 12.0]
+    simulator.execute(Action(np.array([pick, pick + 3.0]), np.array([[10.0, 390.0], [390.0, 390.0]])))
+    after = simulator.state()
+    assert after.short is not None
+    assert min(after.short) > 0.2
+    assert np.abs(strain(garments["pants"].mesh, after.positions)).max() < 0.25
+
+
 @pytest.mark.parametrize("edge_length", [0.03, 0.05])
 def test_a_pick_on_the_cloth_is_never_empty_however_coarse_the_mesh(simulator, edge_length):
     square = plugins.generate_garment("square", SEED, edge_length)

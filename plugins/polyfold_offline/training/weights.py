@@ -37,6 +37,33 @@ def pretrained_encoder(path: Path | None) -> dict[str, Tensor]:
     return load_file(path)
 
 
+def reader_weights(folder: Path) -> dict[str, Tensor]:
+    """The tensors of a trained reader, as :func:`export` wrote them.
+
+    Raises:
+        ConfigError: if the folder holds none, or they are of another network or damaged.
+    """
+    import torch
+    from safetensors import SafetensorError
+    from safetensors.numpy import load_file
+
+    path = folder / "reader.safetensors"
+    try:
+        told = load_file(path)
+    except (OSError, SafetensorError) as error:
+        raise ConfigError(
+            f"{path} can't be read ({error}); give the folder of a trained reader: its reader.safetensors and words.json"
+        ) from error
+    found = {}
+    for name, values in told.items():
+        if name.endswith(".scale"):
+            continue
+        scale = told.get(f"{name}.scale")
+        whole = values.astype(np.float32)
+        found[name] = torch.from_numpy(whole if scale is None else whole * scale[:, None])
+    return found
+
+
 def export(tensors: Mapping[str, Tensor], path: Path, metadata: Mapping[str, str]) -> None:
     """Write a network's tensors."""
     from safetensors.numpy import save_file

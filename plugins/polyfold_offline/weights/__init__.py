@@ -11,9 +11,9 @@ from polyfold.errors import ConfigError
 FOLDER = Path(__file__).parent
 
 SHA256 = {
-    "reader.safetensors": "74b92005c9f8f3d3527fc28049368aaeab31381e01e7f21540a15bbce9d2fc71",
+    "reader.safetensors": "81f803c061791def150b2de479bca41dcb226c6dc58771c95088c8e45d5b68c6",
     "pieces.json": "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037",
-    "words.json": "18a037892a50fa19c370a119874ff26cbb68bfed571754bfdd27d7733079b4a7",
+    "words.json": "8ff305ee922fc16a3297d1ecb640868ada6d3e9bec59b4035df3befd92549c06",
 }
 
 SURE = 0.8
