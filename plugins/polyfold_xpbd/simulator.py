@@ -27,8 +27,9 @@ class XpbdSimulator:
     Grippers hold all layers within 15 mm of a pick, or farther on a coarser mesh, and lay them down at the place
     along an arc. A pick off the cloth grasps nothing: its arm moves empty, and if no arm holds cloth the fold changes
     nothing. Two arms that hold the same cloth part no farther than it reaches, and stop short of their places then. The
-    state says how many plies each arm held and how far short it stopped. With ``guaranteed``, plies that did not at reset never pass
-    through each other, however the grippers pull; one that would have to drag cloth through cloth lags behind.
+    state says how many plies each arm held and how far short it stopped. With ``guaranteed``, plies that did not at
+    reset never pass through each other, however the grippers pull; one that would have to drag cloth through cloth
+    lags behind.
     """
 
     class Config(BaseModel):
@@ -51,8 +52,8 @@ class XpbdSimulator:
             default=0.1,
             ge=0.0,
             le=0.25,
-            description="two arms give way before the cloth between them is stretched by more than this share: clothing "
-            "fabrics stretch by 2 to 15 % under 5 N/cm (Kawabata and Niwa 1989, doi 10.1080/00405008908659184)",
+            description="two arms give way before the cloth between them is stretched by more than this share; the "
+            "limit that Provot sets for woven cloth (Graphics Interface 1995)",
         )
         guaranteed: bool = Field(
             default=False,

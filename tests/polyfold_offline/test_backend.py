@@ -111,6 +111,29 @@ def test_doubt_is_said_with_the_part_in_doubt_and_what_can_be_done():
         doubtful.folds("fold the left sleeve in, then do it to the flumbet", Garment("tshirt", "tshirt"))
 
 
+@pytest.mark.parametrize(
+    ("code", "sooner"),
+    [("goal half", True), ("half end", True), ("half L", False), ("half L; half any", False), ("no part", False)],
+)
+def test_what_leaves_the_way_open_is_answered_sooner(code, sooner):
+    from polyfold_offline.meaning.program import parse_program
+    from polyfold_offline.reading.reader import Reading
+
+    reading = Reading(parse_program(code)[0], None, "", 0.6)
+    assert (reading.limit > 0.75) == sooner
+
+
+def test_readings_that_allow_one_fold_are_weighed_together():
+    from polyfold_offline.cloth.garment import Garment
+    from polyfold_offline.reading.reader import Reader
+
+    readings = Reader(FOLDER, sure=0.8).readings("Can you make this half as high?", Garment("rectangle", "rectangle"))
+    ways = {str(reading.program[0]): reading.sure for reading in readings}
+    assert readings[0].program[0].operation == "half"
+    assert readings[0].program[0].place in ("end", "T", "B", "any")
+    assert sum(ways.values()) > 1.0, "both ways to halve the height are likely"
+
+
 def test_lengths_reach_the_fold_line(planner, llm):
     laid = laid_garment("square", 2001)
     (line,) = plan_ideally("turn up a strip of 5 cm along the bottom edge", laid, planner, llm)

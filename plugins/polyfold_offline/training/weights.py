@@ -52,7 +52,7 @@ def reader_weights(folder: Path) -> dict[str, Tensor]:
         told = load_file(path)
     except (OSError, SafetensorError) as error:
         raise ConfigError(
-            f"{path} can't be read ({error}); give the folder of a trained reader: its reader.safetensors and words.json"
+            f"{path} can't be read ({error}); give the folder of a trained reader, such as --out of an earlier training"
         ) from error
     found = {}
     for name, values in told.items():
