@@ -20,7 +20,7 @@ $(LINTERS): $(INSTALLED)
 demo: $(INSTALLED)
 	$(BIN)/polyfold fold "fold the t-shirt into a rectangular block" --garment tshirt --seed 0 --out runs/demo
 	$(BIN)/polyfold garments --out runs/demo/garments.png
-	$(BIN)/polyfold fold "fold it in half" --garment tshirt --outline tests/data/artf_tshirt.json --out runs/demo-twin
+	$(BIN)/polyfold fold "fold it in half" --garment tshirt --outline polyfold/samples/tshirt.json --out runs/demo-twin
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n 2 --dist loadfile

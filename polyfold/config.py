@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from polyfold.errors import ConfigError, validation_problem
 from polyfold.errors._hints import file_problem, toml_problem
 
-__all__ = ["ComponentSpec", "Experiment", "load_experiment", "read_toml", "to_toml"]
+__all__ = ["ComponentSpec", "Experiment", "load_experiment", "read_toml"]
 
 USUAL = "usual"
 """Stands for the fabric that a kind of garment is usually made of; no component is called so."""
@@ -97,15 +97,3 @@ def _validated(settings: dict[str, Any], source: str) -> Experiment:
         return Experiment(**settings)
     except ValidationError as error:
         raise ConfigError(f"{source} {validation_problem(error, Experiment.model_fields)}") from error
-
-
-def to_toml(experiment: Experiment) -> str:
-    """The experiment as TOML that :func:`load_experiment` reads back to an equal experiment."""
-    import tomli_w
-
-    tables: dict[str, Any] = {}
-    for name, choice in experiment.model_dump().items():
-        if isinstance(choice, dict):
-            choice = {"name": choice["name"], **choice["params"]} if choice["params"] else choice["name"]
-        tables[name] = choice
-    return tomli_w.dumps(tables)

@@ -6,7 +6,7 @@ import pytest
 from polyfold_offline import OfflineLLM
 
 import polyfold
-from experiments.benchmarks.language.loopback import Sent, answering, completion, serve
+from polyfold_offline.loopback import Sent, answering, completion, serve
 from polyfold.analysis import Results, open_results, provider_table, share
 from polyfold.analysis._columns import shared
 from polyfold.analysis._providers import MEASURES, measured

@@ -1,4 +1,8 @@
+"""The notebooks as somebody runs them who has installed the package and copied the notebook somewhere."""
+
+import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import nbformat
@@ -27,10 +31,35 @@ def notebooks():
 NOTEBOOKS = notebooks()
 
 
+@pytest.fixture(scope="session")
+def installed(tmp_path_factory):
+    """The folder that the built wheel is installed into."""
+    target = tmp_path_factory.mktemp("installed")
+    install = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation"]
+    subprocess.run([*install, "--target", str(target), str(ROOT)], check=True)
+    # The simulator's kernels would take minutes to compile again: those of the checkout, whose code is kept.
+    shutil.rmtree(target / "polyfold_xpbd")
+    (target / "polyfold_xpbd").symlink_to(ROOT / "plugins" / "polyfold_xpbd", target_is_directory=True)
+    return target
+
+
+WHERE_FROM = """
+import sys
+
+ours = (name for name in sys.modules if name.startswith(("polyfold", "experiments")))
+[name for name in ours if not str(sys.modules[name].__spec__.origin).startswith({target!r})]
+"""
+
+
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebook_runs_from_top_to_bottom(path):
+def test_notebook_runs_from_an_empty_folder_with_what_is_installed(path, installed, tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", str(installed))
     notebook = nbformat.read(path, as_version=4)
-    NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(path.parent)}}).execute()
+    notebook.cells.append(nbformat.v4.new_code_cell(WHERE_FROM.format(target=str(installed))))
+    NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    (told,) = notebook.cells.pop().outputs
+    assert told["data"]["text/plain"] == "[]", "modules of the checkout"
+    assert not list(tmp_path.iterdir()), "a notebook leaves what it makes in a temporary folder"
     pictures = [
         output
         for cell in notebook.cells

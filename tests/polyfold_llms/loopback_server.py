@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from experiments.benchmarks.language.loopback import Sent, completion
+from polyfold_offline.loopback import Sent, completion
 
 ROUTES = ("openai/gpt-4o", "openrouter/openai/gpt-4o")
 FAKE_KEY = "sk-or-v1-0badc0ffee0badc0ffee0badc0ffee"

@@ -15,7 +15,7 @@ from polyfold_llms import models
 from polyfold_llms.redaction import contains_secret, redact
 from polyfold_offline import OfflineLLM
 
-from experiments.benchmarks.language.loopback import Sent, answering, completion, serve
+from polyfold_offline.loopback import Sent, answering, completion, serve
 from polyfold.api import run
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError

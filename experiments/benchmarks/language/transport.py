@@ -23,7 +23,7 @@ from typing import Any
 
 from polyfold_offline import OfflineLLM
 
-from experiments.benchmarks.language.loopback import Received, Server, answering, serve
+from polyfold_offline.loopback import Received, Server, answering, serve
 from polyfold import plugins
 from polyfold.api import run
 from polyfold.prompts import load_prompt
