@@ -46,13 +46,15 @@ class FaultySimulator:
         self._inner: Any = create("simulators", config.inner, config.inner_params)
         self._grasped: tuple[int, ...] | None = None
         self._short: tuple[float, ...] | None = None
+        self._slipped: tuple[float, ...] | None = None
 
     def reset(self, garment: Garment, seed: int) -> Observation:
         """Lay the garment flat; the faults follow from the seed and from all that is done.
 
         Agents that act alike meet the same faults, and different tasks on one garment meet different ones.
         """
-        self._history, self._grasped, self._short = zlib.crc32(str(seed).encode()), None, None
+        self._history = zlib.crc32(str(seed).encode())
+        self._grasped = self._short = self._slipped = None
         return self._inner.reset(garment, seed)
 
     def observe(self) -> Observation:
@@ -68,12 +70,13 @@ class FaultySimulator:
         holds = self._rng.random(action.arms) >= self._config.miss
         slips, displaced = self._rng.random(2) < (self._config.slip, self._config.displace)
         share = self._rng.uniform(0.3, 0.8) if slips else 1.0
-        self._grasped, self._short = (0,) * action.arms, (0.0,) * action.arms
+        self._grasped, self._short, self._slipped = (0,) * action.arms, (0.0,) * action.arms, (0.0,) * action.arms
         if holds.any():
             picks, places = action.picks[holds], action.places[holds]
             self._inner.execute(Action(picks, picks + share * (places - picks)))
             after = self._inner.state()
             self._grasped, self._short = _among(holds, after.grasped), _among(holds, after.short)
+            self._slipped = _among(holds, after.slipped)
         if displaced:
             self._displace()
         return self.observe()
@@ -95,11 +98,11 @@ class FaultySimulator:
 
     def state(self) -> SimState:
         """Privileged state."""
-        return replace(self._inner.state(), grasped=self._grasped, short=self._short)
+        return replace(self._inner.state(), grasped=self._grasped, short=self._short, slipped=self._slipped)
 
     def restore(self, state: SimState) -> None:
         """Return to a state of this garment."""
-        self._grasped, self._short = state.grasped, state.short
+        self._grasped, self._short, self._slipped = state.grasped, state.short, state.slipped
         self._inner.restore(state)
 
     def close(self) -> None:

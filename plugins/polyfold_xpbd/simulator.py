@@ -26,10 +26,10 @@ class XpbdSimulator:
     The garment is laid with its bounding circle in the middle of the image, turned by an angle drawn from the seed.
     Grippers hold all layers within 15 mm of a pick, or farther on a coarser mesh, and lay them down at the place
     along an arc. A pick off the cloth grasps nothing: its arm moves empty, and if no arm holds cloth the fold changes
-    nothing. Two arms that hold the same cloth part no farther than it reaches, and stop short of their places then. The
-    state says how many plies each arm held and how far short it stopped. With ``guaranteed``, plies that did not at
-    reset never pass through each other, however the grippers pull; one that would have to drag cloth through cloth
-    lags behind.
+    nothing. Two arms that hold the same cloth part no farther than it reaches, and stop short of their places then;
+    what is stretched by a quarter slips out of a grip. The state says how many plies each arm held, how far short it
+    stopped and what share slipped. With ``guaranteed``, plies that did not at reset never pass through each other,
+    however the grippers pull; one that would have to drag cloth through cloth lags behind.
     """
 
     class Config(BaseModel):
@@ -78,6 +78,7 @@ class XpbdSimulator:
         self._garment: Garment | None = None
         self._grasped: tuple[int, ...] | None = None
         self._short: tuple[float, ...] | None = None
+        self._slipped: tuple[float, ...] | None = None
         self._recorder: tuple[Callable[[Observation], None], float] | None = None
 
     @interruptible()
@@ -91,7 +92,7 @@ class XpbdSimulator:
         radius = float(np.hypot(*(flat - centre).T).max())
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
         self._garment, self._seed, self._actions = garment, seed, []
-        self._grasped = self._short = None
+        self._grasped = self._short = self._slipped = None
         self._camera = Camera.framing(2 * radius / self.config.fill)
         self._order, mesh = _renumbered(garment.mesh, self.config.order)
         self._rank = np.argsort(self._order)
@@ -138,6 +139,7 @@ class XpbdSimulator:
                 f"the cloth diverged and the state before this fold was restored; reproduce with {reproduction}. "
                 "Go on with another action, or report it"
             )
+        self._slipped = (0.0,) * action.arms if grip is None else solver.slipped
         return self.observe()
 
     @interruptible()
@@ -159,7 +161,9 @@ class XpbdSimulator:
             **solver.memory(), "actions": tuple(self._actions), "guaranteed": self.config.guaranteed,
         }  # fmt: skip
         positions, velocities = solver.positions()[self._rank], solver.velocities()[self._rank]
-        return SimState(positions, velocities, self._keypoints, self._camera, extra, self._grasped, self._short)
+        return SimState(
+            positions, velocities, self._keypoints, self._camera, extra, self._grasped, self._short, self._slipped
+        )
 
     def restore(self, state: SimState) -> None:
         """Return to a state of this garment, so that several picks can be tried from one."""
@@ -177,7 +181,7 @@ class XpbdSimulator:
         solver.set_state(state.positions[self._order], state.velocities[self._order], state.extra)
         self._camera, self._keypoints = state.camera, state.keypoints
         self._actions = list(state.extra.get("actions", ()))
-        self._grasped, self._short = state.grasped, state.short
+        self._grasped, self._short, self._slipped = state.grasped, state.short, state.slipped
 
     def close(self) -> None:
         """Release the solver; call :meth:`reset` to go on."""

@@ -35,6 +35,8 @@ MOVING, SETTLING = 8.0, 60.0
 """Velocity damping while a gripper moves and while the cloth comes to rest [1/s]."""
 REST_SPEED, LONGEST_SETTLING = 0.003, 1.0
 """RMS speed that counts as rest [m/s], and how long to wait for it [s]."""
+SLIP = 0.25
+"""Strain of an edge at which what is held slips out of its grip: no ordinary cloth is stretched by more."""
 BEND, LEAST_BEND, MOST_BEND = 3.0, 0.15, 0.32
 """Edges are guarded in bends of this angle [rad] per thickness in edge lengths; the least and the most that it is."""
 STIFFEST, LEAD = 1.2, 8.0
@@ -77,7 +79,11 @@ class Grip(NamedTuple):
 
 
 class Solver:
-    """One cloth: buffers of the compiled loop, and folding, settling and waiting with them."""
+    """One cloth: buffers of the compiled loop, and folding, settling and waiting with them.
+
+    Attributes:
+        slipped: of what each arm held in the last fold, the share that slipped out of its grip.
+    """
 
     def __init__(self, mesh: Mesh, flat: NDArray[np.float64], fabric: Fabric, guaranteed: bool = False) -> None:
         count = len(flat)
@@ -120,6 +126,7 @@ class Solver:
         self._set = np.zeros(hinges, np.float32)
         self._rest = np.zeros((hinges, 3), np.float32)
         self._clock = np.zeros(5, np.int64)
+        self.slipped: tuple[float, ...] = ()
         self._watch = watch_memory(count) if guaranteed else None
 
     @property
@@ -209,11 +216,14 @@ class Solver:
     def fold(self, grip: Grip, on_frame: Callable[[], None] | None, interval: float) -> bool:
         """Move what the grippers hold to the places and let it come to rest. False if it diverged."""
         grasp, tethers = grip
+        held_by = enumerate(np.bincount(grasp.arms, minlength=len(grasp.ends)))
         motion = plan_motion(grasp, self.dt)
         self._mobility[grasp.particles] = 0.0
         held = (grasp.particles, grasp.offsets, grasp.arms, motion.directions, motion.path, motion.turns)
         held += tethers
-        alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval)
+        alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval, SLIP)
+        free = self._mobility[grasp.particles] > 0.0
+        self.slipped = tuple(round(float(free[grasp.arms == arm].mean()), 2) if n else 0.0 for arm, n in held_by)
         self._mobility[:] = self._model.lightness
         return alive and self.settle(LONGEST_SETTLING, on_frame, interval)
 
@@ -250,6 +260,7 @@ class Solver:
         rest_speed: float,
         on_frame: Callable[[], None] | None,
         interval: float,
+        slip: float = np.inf,
     ) -> bool:
         # A fresh list and no loads make a stage depend on the saved state alone, so that restore() repeats exactly.
         self._clock[:2] = 0, -1
@@ -259,7 +270,7 @@ class Solver:
         chunk = substeps if on_frame is None else max(1, round(interval / self.dt))
         done = 0
         while done < substeps:
-            status, done = self._advance(held, done, min(done + chunk, substeps), damping, rest_speed)
+            status, done = self._advance(held, done, min(done + chunk, substeps), damping, rest_speed, slip)
             if status == DIVERGED:
                 return False
             if on_frame is not None:
@@ -269,7 +280,13 @@ class Solver:
         return True
 
     def _advance(
-        self, held: tuple[NDArray[Any], ...], first: int, last: int, damping: float, rest_speed: float
+        self,
+        held: tuple[NDArray[Any], ...],
+        first: int,
+        last: int,
+        damping: float,
+        rest_speed: float,
+        slip: float = np.inf,
     ) -> tuple[int, int]:
         model = self._model
         return advance(
@@ -277,7 +294,7 @@ class Solver:
             model.hinges, model.hinge_weights, model.elastic, self._set, self._rest, model.normal_corners, model.panel,
             model.normal_use, self._clock, self._listed, self._foreseen, self._rested, self._sharp, self._stray,
             self._order, *self._again, self._moved, *self._vertex_range, *self._edge_range, self._first, *self._pairs,
-            *self._old_pairs, *self._contacts, self._table_load, *held,
+            *self._old_pairs, *self._contacts, self._table_load, *held, model.lightness, np.float32(slip),
             None if self._watch is None else tuple(self._watch),
             first, last, self._settings, np.float32(damping), np.float32(rest_speed),
         )  # fmt: skip

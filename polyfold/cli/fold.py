@@ -64,9 +64,8 @@ class Printer:
         )
         times = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
         number = f"{step.index + 1} (again)" if step.retry else f"{step.index + 1}"
-        self._flush(
-            f"  fold {number}: {where}, {step.action.arms} arm(s){_empty_grips(step)}{_stopped_short(step)}; {times}"
-        )
+        hold = f"{_empty_grips(step)}{_stopped_short(step)}{_slipped(step)}"
+        self._flush(f"  fold {number}: {where}, {step.action.arms} arm(s){hold}; {times}")
 
     def _flush(self, line: str) -> None:
         print(line)
@@ -86,6 +85,15 @@ def _stopped_short(step: Step) -> str:
 
 _SHORT = 0.005
 """Stops that are nearer to their places than this are not worth a word [m]."""
+
+
+def _slipped(step: Step) -> str:
+    lost = [f"arm {arm}" for arm, share in enumerate(step.after.slipped or (), 1) if share >= _LOST]
+    return f", the cloth slipped out of the grip of {' and '.join(lost)}" if lost else ""
+
+
+_LOST = 0.5
+"""An arm that holds less than this share of what it took has lost the cloth."""
 
 
 def _how_to_name(fidelity: Fidelity) -> str:

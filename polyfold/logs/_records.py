@@ -52,6 +52,7 @@ class StepRecord(LogRecord):
         values_picks: whether the policy rated every place to pick.
         grasped: how many plies each arm held, 0 for an empty grip; None if the simulator doesn't say.
         short: how far from its place each arm stopped because the cloth reached no farther [m]; None likewise.
+        slipped: what share of the cloth that each arm held slipped out of its grip, 0 to 1; None likewise.
     """
 
     subgoal: str | None
@@ -64,6 +65,7 @@ class StepRecord(LogRecord):
     values_picks: bool = False
     grasped: tuple[int, ...] | None = None
     short: tuple[float, ...] | None = None
+    slipped: tuple[float, ...] | None = None
 
 
 class CallRecord(LogRecord):

@@ -132,6 +132,7 @@ def _step(step: Step) -> StepRecord:
         values_picks=step.action_map is not None,
         grasped=step.after.grasped,
         short=step.after.short,
+        slipped=step.after.slipped,
     )
 
 

@@ -27,6 +27,7 @@ class SimState:
         grasped: how many plies each arm held in the fold that led here, 0 for an empty grip; None before a fold, or if
             the simulator doesn't say.
         short: how far from its place each arm stopped because the cloth reached no farther [m]; None as of ``grasped``.
+        slipped: what share of the cloth that each arm held slipped out of its grip, 0 to 1; None as of ``grasped``.
     """
 
     positions: Floats
@@ -36,6 +37,7 @@ class SimState:
     extra: Mapping[str, Any] = field(default_factory=dict)
     grasped: tuple[int, ...] | None = None
     short: tuple[float, ...] | None = None
+    slipped: tuple[float, ...] | None = None
 
     def keypoint_positions(self) -> dict[str, Floats]:
         """Named keypoint -> position [m], shape (3,)."""

@@ -4,9 +4,9 @@ import json
 
 import pytest
 from polyfold_offline import OfflineLLM
+from polyfold_offline.loopback import Sent, answering, completion, serve
 
 import polyfold
-from polyfold_offline.loopback import Sent, answering, completion, serve
 from polyfold.analysis import Results, open_results, provider_table, share
 from polyfold.analysis._columns import shared
 from polyfold.analysis._providers import MEASURES, measured

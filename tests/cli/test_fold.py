@@ -57,7 +57,7 @@ def test_an_empty_grip_is_said_and_recorded(polyfold, tmp_path):
     for name, plies in (("good", 1), ("missed", 0)):
         (step,) = json.loads((tmp_path / name / "episode.json").read_text())["steps"]
         assert step["grasped"] == [plies] * len(step["picks"])
-        assert step["short"] == [0.0] * len(step["picks"])
+        assert step["short"] == step["slipped"] == [0.0] * len(step["picks"])
 
 
 def test_a_garment_keeps_its_fabric_unless_one_is_named():

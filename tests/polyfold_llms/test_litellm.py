@@ -14,8 +14,8 @@ from loopback_server import FAKE_KEY, GOOD, ROUTES, Script, error, said
 from polyfold_llms import models
 from polyfold_llms.redaction import contains_secret, redact
 from polyfold_offline import OfflineLLM
-
 from polyfold_offline.loopback import Sent, answering, completion, serve
+
 from polyfold.api import run
 from polyfold.cli import main
 from polyfold.errors import ConfigError, LLMAccessError

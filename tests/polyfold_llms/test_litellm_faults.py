@@ -7,9 +7,9 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from loopback_server import ACCESS, FAKE_KEY, FAULTS, GOOD, REFUSED_REQUESTS, ROUTES, Script, error, line, said
 from polyfold_llms.retries import RetryPolicy, TransportError, call_with_retries
+from polyfold_offline.loopback import Sent, completion, serve
 from polyfold_planning.answers.replies import answer_object
 
-from polyfold_offline.loopback import Sent, completion, serve
 from experiments.benchmarks.language.understanding import laid_garment, plan_ideally
 from polyfold.errors import ConfigError, LLMAccessError, LLMError, PlanError, RefusedError
 from polyfold.logs._accounts import accounts

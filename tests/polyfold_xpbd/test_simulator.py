@@ -226,6 +226,22 @@ def test_two_grips_on_one_spot_go_together(simulator, garments):
     assert np.abs(strain(garments["pants"].mesh, after.positions)).max() < 0.25
 
 
+def test_cloth_that_would_be_torn_slips_out_of_the_grip(simulator):
+    square = plugins.generate_garment("square", 5008, 0.0155)
+    simulator.reset(square, 5008)
+    simulator.execute(half_of_square(simulator))
+    assert simulator.state().slipped == (0.0, 0.0)
+    simulator.reset(square, 5008)
+    picks = np.array([[183.0, 211.0], [228.0, 142.0]])
+    before = simulator.state()
+    simulator.execute(Action(picks, np.array([[395.0, 4.0], [4.0, 395.0]])))
+    after = simulator.state()
+    assert max(after.slipped) > 0.0
+    assert strain(square.mesh, after.positions).max() < 0.35
+    simulator.restore(before)
+    assert simulator.state().slipped is None
+
+
 @pytest.mark.parametrize("edge_length", [0.03, 0.05])
 def test_a_pick_on_the_cloth_is_never_empty_however_coarse_the_mesh(simulator, edge_length):
     square = plugins.generate_garment("square", SEED, edge_length)

@@ -22,8 +22,8 @@ from pathlib import Path
 from typing import Any
 
 from polyfold_offline import OfflineLLM
-
 from polyfold_offline.loopback import Received, Server, answering, serve
+
 from polyfold import plugins
 from polyfold.api import run
 from polyfold.prompts import load_prompt

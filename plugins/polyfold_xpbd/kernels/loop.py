@@ -14,7 +14,7 @@ from polyfold_xpbd.kernels.guarantee.apart import keep_apart
 from polyfold_xpbd.kernels.guarantee.close import Watch
 from polyfold_xpbd.kernels.listing import CROWDED, HORIZON, IMPOSSIBLE, PARTIAL, WHOLE, list_anew
 from polyfold_xpbd.kernels.motion import carry, damp, is_finite, predict, rests, velocities
-from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, stretch
+from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, let_go, stretch
 from polyfold_xpbd.kernels.touching import find_edge_contacts, find_vertex_contacts, keep_contacts
 
 RUNNING, SETTLED, DIVERGED = 0, 1, 2
@@ -45,7 +45,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         vertices_again, edges_again, close, moved, vertex_starts, vertex_stops, edge_starts,
         edge_stops, first, second, side, over, load, old_second, old_side, old_over, old_load, bodies, weights,
         responses, contact_normals, inverse, source, table_load, grasped, offsets, arm, directions, path, turns, tied,
-        anchors, lengths, watch, begin, end, settings, damping, rest_speed,
+        anchors, lengths, lightness, slip, watch, begin, end, settings, damping, rest_speed,
     ):  # fmt: skip
         """Run substeps ``begin`` to ``end`` in place; stop once the cloth is slower than ``rest_speed`` [m/s], if > 0.
 
@@ -54,6 +54,8 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
                 and the contacts in use, int64, shape (5,).
             settings: time step [s], thickness, slack and cell [m], friction of table and cloth, recovery [m] and top
                 speed [m/s], share of a crease that stays, lead of bending [s], mean normal of a bend, shape (11,).
+            lightness: inverse masses where nothing is held, as shares of the mean's, shape (N,).
+            slip: strain of an edge at which what is held slips out of its grip.
             watch: the arrays of a :class:`Watch`; None guarantees nothing. A class in the signature would be in numba's
                 cache, and numba 0.68 loads even a stale one: moved or renamed, it could not be imported.
 
@@ -77,6 +79,8 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             if listing == IMPOSSIBLE:
                 return DIVERGED, k
             if clock[1] % LOOK_EVERY == 0:
+                if grasped.shape[0] > 0:
+                    let_go(x, mobility, lightness, edges, rest_lengths, slip)
                 crease(x, hinges, hinge_weights, elastic, settings[8], set_curvature, rest)
             if clock[1] % LOOK_EVERY == 0 or listing in (WHOLE, CROWDED):
                 clock[4] = find_vertex_contacts(
@@ -110,7 +114,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             clock[1] = HORIZON if listing == CROWDED else clock[1] + 1
             predict(x, v, previous, start, mobility, dt, fastest)
             if grasped.shape[0] > 0:
-                carry(x, grasped, offsets, arm, directions, path, turns, k, fastest * dt)
+                carry(x, mobility, grasped, offsets, arm, directions, path, turns, k, fastest * dt)
             fall = np.float32(9.81) * dt * dt
             warm_start(x, mobility, clock[4], bodies, responses, contact_normals, source, load, table_load, fall)
             if grasped.shape[0] > 0:

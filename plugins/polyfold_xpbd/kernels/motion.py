@@ -51,19 +51,20 @@ def predict(x, v, previous, start, mobility, dt, fastest):
 
 
 @compiled
-def carry(x, grasped, offsets, arm, directions, path, turns, k, most):
+def carry(x, mobility, grasped, offsets, arm, directions, path, turns, k, most):
     """Put the grasped particles where the grippers are, turned about the crease's direction.
 
-    What was held back catches up by at most ``most`` [m].
+    What was held back catches up by at most ``most`` [m]; what has slipped out of its grip, and can move, is left.
     """
     c, s = turns[k, 0], turns[k, 1]
     for g in range(grasped.shape[0]):
-        a = arm[g]
+        i, a = grasped[g], arm[g]
+        if mobility[i] > np.float32(0.0):
+            continue
         ux, uy = directions[a, 0], directions[a, 1]
         forward = offsets[g, 0] * ux + offsets[g, 1] * uy
         up = offsets[g, 2]
         turned, risen = c * forward + s * up, c * up - s * forward
-        i = grasped[g]
         px = path[k, a, 0] + offsets[g, 0] + (turned - forward) * ux
         py = path[k, a, 1] + offsets[g, 1] + (turned - forward) * uy
         pz = path[k, a, 2] + risen

@@ -103,8 +103,30 @@ def stretch(x, mobility, edges, rest_lengths):
 
 
 @compiled
+def let_go(x, mobility, lightness, edges, rest_lengths, most):
+    """Free held particles at whose edges the cloth is stretched by more than ``most``: they slip out of the grip.
+
+    Args:
+        x: positions [m], shape (N, 3).
+        mobility: inverse masses, as shares of the mean's; 0 for held particles, shape (N,), changed.
+        lightness: what they are where nothing is held, shape (N,).
+        edges: pairs of particles, shape (E, 2).
+        rest_lengths: [m], shape (E,).
+        most: the largest strain that a grip bears.
+    """
+    longest = (np.float32(1.0) + most) * (np.float32(1.0) + most)
+    for e in range(edges.shape[0]):
+        a, b = edges[e, 0], edges[e, 1]
+        if mobility[a] > np.float32(0.0) and mobility[b] > np.float32(0.0):
+            continue
+        dx, dy, dz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+        if dx * dx + dy * dy + dz * dz > longest * rest_lengths[e] * rest_lengths[e]:
+            mobility[a], mobility[b] = lightness[a], lightness[b]
+
+
+@compiled
 def hold_back(x, mobility, particles, anchors, lengths):
-    """Move free particles back to where their tethers reach.
+    """Move free particles back to where their tethers reach, of which the anchors are held.
 
     Args:
         x: positions [m], shape (N, 3), changed.
@@ -116,6 +138,7 @@ def hold_back(x, mobility, particles, anchors, lengths):
         i, a = particles[t], anchors[t]
         dx, dy, dz = x[i, 0] - x[a, 0], x[i, 1] - x[a, 1], x[i, 2] - x[a, 2]
         d2 = dx * dx + dy * dy + dz * dz
-        if d2 > lengths[t] * lengths[t] and mobility[i] > np.float32(0.0):
+        held = mobility[a] == np.float32(0.0) and mobility[i] > np.float32(0.0)
+        if held and d2 > lengths[t] * lengths[t]:
             s = np.float32(1.0) - lengths[t] / np.sqrt(d2)
             shift(x, i, -s, dx, dy, dz)
