@@ -16,7 +16,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "polyfold.analysis": ("compare", "table"),
-    "polyfold.api": ("fold", "garment", "ground", "open", "run", "samples"),
+    "polyfold.api": ("fold", "garment", "ground", "open", "run"),
     "polyfold.config": ("Experiment",),
     "polyfold.errors": ("PolyfoldError", "RefusedError"),
     "polyfold.garments": ("Fabric", "Garment"),
@@ -60,14 +60,13 @@ __all__ = [
     "plugins",
     "register",
     "run",
-    "samples",
     "table",
 ]
 
 if TYPE_CHECKING:
     from polyfold import plugins
     from polyfold.analysis import compare, table
-    from polyfold.api import fold, garment, ground, open, run, samples
+    from polyfold.api import fold, garment, ground, open, run
     from polyfold.config import Experiment
     from polyfold.errors import PolyfoldError, RefusedError
     from polyfold.garments import Fabric, Garment

@@ -29,7 +29,7 @@ def give_way(grasp: Grasp, tethers: Tethers, strain: float) -> Grasp:
     if not between.any():
         return grasp
     first, second = place[tethers.anchors[between]], place[tethers.particles[between]]
-    reach = (1.0 + strain) * tethers.lengths[between]
+    reach = (1.0 + strain) * tethers.lengths[between].astype(np.float64)
     ends = grasp.ends
     for _ in range(TURNS_AGAIN):
         offsets = _turned(replace(grasp, ends=ends))

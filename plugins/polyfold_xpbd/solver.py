@@ -18,6 +18,7 @@ from polyfold_xpbd.kernels.guarantee.close import watch_memory
 from polyfold_xpbd.kernels.loop import DIVERGED, SETTLED, advance
 from polyfold_xpbd.kernels.vectors import vertex_normals
 from polyfold_xpbd.model import ClothModel, build_model
+from polyfold_xpbd.stability import bending_lead, bent_normal, time_step
 from polyfold_xpbd.tethers import TetherMap, Tethers
 
 SLACK = 0.002
@@ -37,32 +38,6 @@ REST_SPEED, LONGEST_SETTLING = 0.003, 1.0
 """RMS speed that counts as rest [m/s], and how long to wait for it [s]."""
 SLIP = 0.25
 """Strain of an edge at which what is held slips out of its grip: no ordinary cloth is stretched by more."""
-BEND, LEAST_BEND, MOST_BEND = 3.0, 0.15, 0.32
-"""Edges are guarded in bends of this angle [rad] per thickness in edge lengths; the least and the most that it is."""
-STIFFEST, LEAD = 1.2, 8.0
-"""What keeps bending stable: its fastest squared frequency, times the squared substep, times the lead plus one half.
-
-The lead is how far ahead, in substeps, bending looks along the motion, which damps it; no further than it need be.
-"""
-
-
-def time_step(edge_length: float, bending_rate: float = 0.0) -> float:
-    """Substep [s] that a mesh of this edge length [m] and this fastest bending [1/s] needs."""
-    step = 1 / 750 if edge_length < 0.0128 else 1 / 600
-    return min(step, float(np.sqrt(STIFFEST)) / max(bending_rate, 1e-9))
-
-
-def bending_lead(step: float, bending_rate: float) -> float:
-    """How far bending looks ahead [s] at this substep [s] and this fastest bending [1/s]."""
-    return step * min(LEAD, STIFFEST / max(step * bending_rate, 1e-9) ** 2 - 0.5)
-
-
-def bent_normal(thickness: float) -> float:
-    """Length of a mean normal below which edges are guarded against edges; ``thickness`` in edge lengths.
-
-    Vertices on triangles alone let sheets bent by an angle into each other by about a quarter of it, in edge lengths.
-    """
-    return float(np.cos(np.clip(BEND * thickness, LEAST_BEND, MOST_BEND)))
 
 
 @lru_cache(maxsize=4)

@@ -2,7 +2,6 @@
 
 from polyfold.api._fold import attempt, fold
 from polyfold.api._loaders import Grounded, garment, ground
-from polyfold.api._samples import samples
 from polyfold.api._studies import open, run
 
 __all__ = [
@@ -13,5 +12,4 @@ __all__ = [
     "ground",
     "open",
     "run",
-    "samples",
 ]

@@ -7,6 +7,7 @@ from polyfold.garments._fabric import Fabric
 from polyfold.garments._garment import Garment, Mesh
 from polyfold.garments._naming import name_by_pose
 from polyfold.garments._outline import Outline, curved_outline
+from polyfold.garments._outline_files import samples
 from polyfold.garments._panels import mesh_panels
 from polyfold.garments._pattern import Pattern
 from polyfold.garments._silhouette import find_cloth
@@ -21,4 +22,5 @@ __all__ = [
     "find_cloth",
     "mesh_panels",
     "name_by_pose",
+    "samples",
 ]

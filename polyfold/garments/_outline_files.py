@@ -205,3 +205,20 @@ def _in_bytes(picture: Any) -> Any:
     most = float(values.max(initial=0.0))
     white = next((white for white in (1.0, 255.0, 65_535.0) if most <= white), most)
     return Image.fromarray(np.round(values.clip(0) * (255.0 / white)).astype(np.uint8))
+
+
+_SAMPLES = Path(__file__).parents[1] / "samples"
+
+
+def samples() -> dict[str, Path]:
+    """Outlines of real garments that come with the package, to try things on.
+
+        >>> from polyfold.garments import samples
+        >>> polyfold.garment("tshirt", outline=samples()["tshirt"])
+
+    Returns:
+        Name -> file, as ``outline`` of :func:`polyfold.garment` and :func:`polyfold.ground`, and ``polyfold fold
+        --outline``, read it: ``shorts``, ``towel`` and ``tshirt``, from the aRTF Clothes dataset (doi
+        10.5281/zenodo.10875542, CC-BY 4.0).
+    """
+    return {path.stem: path for path in sorted(_SAMPLES.glob("*.json"))}

@@ -12,8 +12,11 @@ from polyfold_offline.meaning.program import NONE, Piece
 
 Test = Callable[[Outcome], bool]
 
-SMALL, SMALL_PANTS = 0.42, 0.25
-"""A pile for a drawer covers at most this share of the flat garment,"""
+SMALL = {"tshirt": 0.54, "pants": 0.25}
+"""A pile for a drawer covers at most this share of the flat garment; the sleeves of t-shirts are thin."""
+
+PLAIN_SMALL = 0.42
+"""... of a plain cloth this share,"""
 
 FEW_SMALL = 0.6
 """... or this, if few folds are asked for."""
@@ -69,7 +72,7 @@ def demands(goal: Piece, size_cm: tuple[float, float] | None, garment: Garment) 
     elif goal.place == "neat" and (size_cm or count):
         yield "a block", lambda outcome: outcome.rectangular > 0.7 and outcome.area <= FEW_SMALL
     elif goal.place == "neat":
-        small = SMALL_PANTS if garment.family == "pants" else SMALL
+        small = SMALL.get(garment.family, PLAIN_SMALL)
         yield "a small block", lambda o: o.rectangular > 0.85 and o.area <= small and o.slim > 0.3
     elif goal.place == "tiny":
         smallest = min(outcome.area for outcome in outcomes(garment.family))

@@ -40,6 +40,7 @@ class TrainLanguage:
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Train what is missing and say where the weights are."""
+        from polyfold_offline.training.corpus import read_corpus
         from polyfold_offline.training.learning import (
             GOING_ON,
             Schedule,
@@ -48,6 +49,7 @@ class TrainLanguage:
             train_reader,
         )
 
+        sentences = read_corpus(arguments.sentences)
         if arguments.reader is not None:
             plan = Schedule.going_on(arguments.steps or GOING_ON, arguments.seed)
             beginning = begin_with_reader(arguments.reader)
@@ -55,7 +57,7 @@ class TrainLanguage:
             plan = Schedule(steps=arguments.steps or Schedule.steps, seed=arguments.seed)
             beginning = begin_with_encoder(arguments.encoder, arguments.seed)
         try:
-            weights = train_reader(arguments.sentences, arguments.out, beginning, plan)
+            weights = train_reader(sentences, arguments.out, beginning, plan)
         except KeyboardInterrupt:
             print(f"interrupted; run the same command to go on from the last checkpoint in {arguments.out}")
             raise

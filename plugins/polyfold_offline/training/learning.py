@@ -18,7 +18,6 @@ from polyfold.logs import exclusive
 from polyfold_offline.reading.pieces import Pieces
 from polyfold_offline.reading.text import words_of
 from polyfold_offline.training.batches import Batches
-from polyfold_offline.training.corpus import read_corpus
 from polyfold_offline.training.generator import generate
 from polyfold_offline.training.network import ReaderNetwork, load_pretrained
 from polyfold_offline.weights import FOLDER
@@ -235,11 +234,11 @@ def begin_with_reader(folder: Path) -> Beginning:
         raise ConfigError(f"{folder} holds no reader to go on from: {str(error).splitlines()[0]}") from error
 
 
-def train_reader(sentences: Path, out: Path, beginning: Beginning, plan: Schedule) -> Path:
-    """Train a reader on a folder of sentences; what it needs to read stands in ``out`` then.
+def train_reader(examples: Sequence[Example], out: Path, beginning: Beginning, plan: Schedule) -> Path:
+    """Train a reader on written sentences; what it needs to read stands in ``out`` then.
 
     Args:
-        sentences: folder of JSONL files, see :mod:`polyfold_offline.training.corpus`.
+        examples: sentences with their meanings, see :func:`polyfold_offline.training.corpus.read_corpus`.
         out: folder for ``reader.safetensors``, ``pieces.json``, ``words.json``, the log and the checkpoint.
         beginning: the network to train.
         plan: how long and how fast to learn.
@@ -247,7 +246,6 @@ def train_reader(sentences: Path, out: Path, beginning: Beginning, plan: Schedul
     Returns:
         The file of the weights.
     """
-    examples = read_corpus(sentences)
     with exclusive(out):
         return _trained(examples, beginning, out, plan)
 
