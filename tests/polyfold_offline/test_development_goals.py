@@ -79,7 +79,7 @@ def outcome(goal, suite):
 
 
 def test_most_goals_are_reached_and_few_are_missed(suite):
-    """Of a third of them; the shipped weights have learned from these goals, and of all 300 they reach 273."""
+    """Of a third of them; the shipped weights have learned from these goals, and of all 300 they reach 269."""
     found = Counter(outcome(OpenTask(**goal), suite) for goal in GOALS[::3])
     assert found["reached"] >= 0.85 * found.total()
     assert found["missed"] <= 0.04 * found.total()
