@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import os
+import warnings
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +19,7 @@ from polyfold.evaluation._judging import final_mask
 from polyfold.garments import Garment, Mesh
 from polyfold.geometry import Camera
 from polyfold.logs._dependencies import fingerprint
+from polyfold.logs._disk.files import write_atomically
 from polyfold.logs._host import processor
 from polyfold.plugins.interfaces import HasReferenceConfig
 from polyfold.rollout import run_episode
@@ -62,15 +66,15 @@ def reference_for(task: Task, garment: Garment, seed: int, simulator: ComponentS
     """
     experiment = Experiment.of(agent="oracle", simulator=_reference_simulator(simulator))
     path = cache_folder() / "references" / f"{_key(task, garment, seed, experiment)}.npz"
-    if path.exists():
-        return _read(path, garment.mesh)
+    if (kept := _kept(path, garment.mesh)) is not None:
+        return kept
     episode = run_episode(experiment, garment, "", seed, task=task, role="reference")
     if episode.error is not None:
         raise episode.error
     mask = final_mask(episode)
     after = tuple(step.after for step in episode.final_attempts())
     found = Reference(Outcome(episode.initial_state, episode.final_state, mask, garment.mesh), after)
-    _write(path, found)
+    _keep(path, found)
     return found
 
 
@@ -112,21 +116,40 @@ def _key(task: Task, garment: Garment, seed: int, experiment: Experiment) -> str
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:40]
 
 
-def _write(path: Path, reference: Reference) -> None:
+def _keep(path: Path, reference: Reference) -> None:
     """Write all at once, so that a kill leaves no half reference and two workers never disturb each other."""
     start, mask = reference.outcome.start, reference.outcome.mask
-    camera = start.camera
-    path.parent.mkdir(parents=True, exist_ok=True)
-    scratch = path.with_name(f".{path.stem}.{os.getpid()}.npz")
+    camera, content = start.camera, io.BytesIO()
     np.savez_compressed(
-        scratch,
+        content,
         positions=np.stack([state.positions for state in (start, *reference.after)]),
         mask=np.packbits(mask),
         camera=np.array([camera.width, camera.height, camera.focal, camera.elevation]),
         names=np.array(list(start.keypoints)),
         indices=np.array(list(start.keypoints.values())),
     )
-    scratch.replace(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, content.getvalue())
+    except OSError as error:
+        _mention(f"references can't be kept in {path.parent} ({error.strerror}), and are computed by each run")
+
+
+def _kept(path: Path, mesh: Mesh) -> Reference | None:
+    """A reference that was computed before; None if there is none, or it can't be read."""
+    if not path.exists():
+        return None
+    try:
+        return _read(path, mesh)
+    except Exception as error:  # a damaged archive raises whatever its bytes make of it
+        _mention(f"the reference {path} is damaged ({error}), and is computed anew")
+        return None
+
+
+@cache
+def _mention(problem: str) -> None:
+    """Warn once: a study asks for the same references again and again."""
+    warnings.warn(f"{problem}; set POLYFOLD_CACHE to another folder if that comes again", stacklevel=4)
 
 
 def _read(path: Path, mesh: Mesh) -> Reference:
