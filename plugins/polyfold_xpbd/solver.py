@@ -191,14 +191,14 @@ class Solver:
     def fold(self, grip: Grip, on_frame: Callable[[], None] | None, interval: float) -> bool:
         """Move what the grippers hold to the places and let it come to rest. False if it diverged."""
         grasp, tethers = grip
-        held_by = enumerate(np.bincount(grasp.arms, minlength=len(grasp.ends)))
         motion = plan_motion(grasp, self.dt)
         self._mobility[grasp.particles] = 0.0
         held = (grasp.particles, grasp.offsets, grasp.arms, motion.directions, motion.path, motion.turns)
         held += tethers
         alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval, SLIP)
-        free = self._mobility[grasp.particles] > 0.0
-        self.slipped = tuple(round(float(free[grasp.arms == arm].mean()), 2) if n else 0.0 for arm, n in held_by)
+        arms, free = len(grasp.ends), self._mobility[grasp.particles] > 0.0
+        lost, taken = np.bincount(grasp.arms, free, arms), np.bincount(grasp.arms, minlength=arms)
+        self.slipped = tuple((lost / np.maximum(taken, 1)).round(2).tolist())
         self._mobility[:] = self._model.lightness
         return alive and self.settle(LONGEST_SETTLING, on_frame, interval)
 

@@ -93,7 +93,7 @@ def _slipped(step: Step) -> str:
 
 
 _LOST = 0.5
-"""An arm that holds less than this share of what it took has lost the cloth."""
+"""An arm has lost the cloth if this share of what it took slipped out of its grip."""
 
 
 def _how_to_name(fidelity: Fidelity) -> str:

