@@ -80,6 +80,8 @@ COMMANDS = (
         ),
     ),
     CommandStep("coverage", 0.1, (("coverage",),)),
+    CommandStep("tokens", 0.1, (("language.tokens",),)),
+    CommandStep("folders", 0.2, (("folders",),)),
     CommandStep("speed", 0.1, (("speed",),)),
     CommandStep("running", 0.2, (("running",),)),
 )

@@ -48,6 +48,30 @@ def test_a_killed_holder_holds_no_longer(tmp_path, holder):
     assert not (tmp_path / ".holder.json").exists()
 
 
+LOCKLESS_HOLDER = (
+    """
+import errno, filelock
+class NoLocks(filelock.FileLock):
+    def _acquire(self):
+        raise OSError(errno.ENOLCK, "no locks here")
+filelock.FileLock = NoLocks
+"""
+    + HOLDER
+)
+
+
+def test_where_a_disk_has_no_locks_a_file_stands_in_and_ends_with_its_holder_too(tmp_path):
+    command = [sys.executable, "-c", LOCKLESS_HOLDER, str(tmp_path)]
+    for _ in range(2):
+        holding = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        assert holding.stdout is not None
+        assert holding.stdout.readline() == b"held\n", holding.communicate()
+        refused = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert f"in use by process {holding.pid}" in refused.stderr
+        holding.kill()
+        holding.communicate()
+
+
 def note_of_another_machine(folder, age):
     note = folder / ".holder.json"
     note.write_text(json.dumps({"pid": 7, "host": "elsewhere", "since": "2026-01-01T00:00:00+00:00"}))

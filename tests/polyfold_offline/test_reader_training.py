@@ -15,7 +15,8 @@ from polyfold_offline.reading.tokens import INDEX, advance, begin, spell
 from polyfold_offline.training.batches import Batches, collate
 from polyfold_offline.training.corpus import Example, make_example, read_corpus
 from polyfold_offline.training.generator import generate
-from polyfold_offline.training.learning import Learner, Schedule, begin_with_reader, frequent_words, train
+from polyfold_offline.training.learner import Learner, Schedule
+from polyfold_offline.training.learning import begin_with_reader, frequent_words, train
 from polyfold_offline.training.network import DEEP, INNER, WIDTH, ReaderNetwork, load_pretrained
 from polyfold_offline.training.variation import vary
 from polyfold_offline.training.weights import export, reader_weights
@@ -93,6 +94,15 @@ def test_a_training_that_was_stopped_ends_as_one_that_was_not(pieces, examples, 
         assert torch.equal(tensor, resumed.average[name]), name
 
 
+def test_a_flipped_bit_of_a_checkpoint_is_found(pieces, examples, trained, tmp_path):
+    trained.save(tmp_path / "checkpoint.safetensors")
+    content = bytearray((tmp_path / "checkpoint.safetensors").read_bytes())
+    content[-1000] ^= 1
+    (tmp_path / "checkpoint.safetensors").write_bytes(bytes(content))
+    with pytest.raises(ConfigError, match=r"is damaged.*remove it to learn from the beginning"):
+        learner(pieces, examples).resume(tmp_path / "checkpoint.safetensors")
+
+
 def test_numpy_reads_as_torch_does(pieces, trained, tmp_path):
     export(trained.average, tmp_path / "reader.safetensors", {"steps": "4"})
     assert (tmp_path / "reader.safetensors").stat().st_size < 30e6
@@ -129,6 +139,8 @@ def test_a_trained_reader_learns_from_sentences_of_ones_own(tmp_path, capsys):
     words = json.loads((tmp_path / "out" / "words.json").read_text("utf-8"))
     assert words["zibble"] == 32
     assert words.keys() > json.loads((FOLDER / "words.json").read_text("utf-8")).keys()
+    assert main([*command, "--steps", "2"]) == 1
+    assert "holds a training with another plan; choose another folder" in capsys.readouterr().err
     before, after = reader_weights(FOLDER), reader_weights(tmp_path / "out")
     assert before.keys() == after.keys()
     assert 0 < max((after[name] - before[name]).abs().max() for name in before) < 0.05

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -113,8 +114,9 @@ class Learner:
         tensors = {f"network.{name}": tensor for name, tensor in self.network.state_dict().items()}
         for index, state in self._optimizer.state_dict()["state"].items():
             tensors |= {f"optimizer.{index}.{name}": tensor for name, tensor in state.items()}
+        tensors = {name: tensor.cpu().contiguous() for name, tensor in tensors.items()}
         part = path.with_suffix(".part")
-        save_file({name: tensor.cpu().contiguous() for name, tensor in tensors.items()}, part, {"epoch": str(epoch)})
+        save_file(tensors, part, {"epoch": str(epoch), "sha256": _digest(tensors)})
         part.replace(path)
 
     def resume(self, path: Path) -> int:
@@ -125,8 +127,10 @@ class Learner:
             return 0
         try:
             with safe_open(path, "pt") as stream:
-                epoch = int(stream.metadata()["epoch"])
+                epoch, digest = int(stream.metadata()["epoch"]), stream.metadata()["sha256"]
                 tensors = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118
+            if digest != _digest(tensors):
+                raise ValueError("its numbers are not those that were written")
         except (SafetensorError, KeyError, TypeError, ValueError) as error:
             raise ConfigError(f"{path} is damaged ({error}); remove it to train from the beginning") from error
         self.network.load_state_dict(_under("network.", tensors))
@@ -144,6 +148,15 @@ def _loss(errors: Tensor, valid: Tensor, state_weight: float) -> Tensor:
     shared = (errors * there).sum(1, keepdim=True) / there.sum(1, keepdim=True)
     squares = (errors - shared).square() + state_weight * shared.square()
     return (squares.mean(-1) * valid).sum() / valid.sum()
+
+
+def _digest(tensors: Mapping[str, Tensor]) -> str:
+    """SHA-256 of all names and numbers: a flipped bit would train on as if nothing were."""
+    digest = hashlib.sha256()
+    for name in sorted(tensors):
+        digest.update(name.encode())
+        digest.update(tensors[name].numpy().tobytes())
+    return digest.hexdigest()
 
 
 def _under(prefix: str, tensors: Mapping[str, Tensor]) -> dict[str, Tensor]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from polyfold.errors import ConfigError
 from polyfold.logs import JsonLines
 from polyfold_fgpnp.training.runs import METRICS
 
@@ -26,9 +27,20 @@ class Logs:
         self._board = _tensorboard(out, done)
 
     def _drop_after(self, done: int) -> None:
-        ends = [0, *(end for _, end in islice(self._lines.lines(), done))]
+        records, damaged = self._lines.sound(_logged)
+        if damaged:
+            beside = self._lines.set_aside(damaged)
+            warnings.warn(f"{len(damaged)} damaged lines of {self._lines.path} are set aside in {beside}", stacklevel=2)
+        end, last = 0, 0
+        for record, (_, stop) in zip(records, self._lines.lines(), strict=False):
+            if not last < record["epoch"] <= done:
+                break
+            end, last = stop, record["epoch"]
         if self._lines.path.exists():
-            os.truncate(self._lines.path, ends[-1])
+            os.truncate(self._lines.path, end)
+        if lacking := sorted(set(range(1, done + 1)) - {record["epoch"] for record in records}):
+            named = ", ".join(map(str, lacking))
+            warnings.warn(f"{self._lines.path} lacks epoch {named}; the weights don't depend on it", stacklevel=2)
 
     def __enter__(self) -> Logs:
         return self
@@ -43,6 +55,12 @@ class Logs:
         if self._board is not None:
             for name, value in metrics.items():
                 self._board.add_scalar(name, value, epoch)
+
+
+def _logged(record: dict[str, Any], where: str) -> dict[str, Any]:
+    if not isinstance(record.get("epoch"), int):
+        raise ConfigError(f"{where} says of no epoch how it was")
+    return record
 
 
 def _tensorboard(out: Path, done: int) -> Any:

@@ -82,8 +82,14 @@ def _device(name: str) -> torch.device:
 def _refuse_another(out: Path, wanted: str) -> None:
     """Refuse a folder whose note says that it holds another training."""
     note = out / "training.json"
-    if note.exists() and note.read_text("utf-8") != wanted:
-        raise ConfigError(f"{out} holds a training with another configuration or other data; choose another folder")
+    if not note.exists() or (held := note.read_bytes()) == wanted.encode():
+        return
+    try:
+        json.loads(held)
+    except ValueError as error:
+        advice = "remove that file to go on with the configuration given, or choose another folder"
+        raise ConfigError(f"{note} is damaged ({error}); {advice}") from error
+    raise ConfigError(f"{out} holds a training with another configuration or other data; choose another folder")
 
 
 def _split(examples: Examples, held_out: float) -> tuple[Examples, Examples]:

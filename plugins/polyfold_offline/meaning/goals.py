@@ -58,6 +58,8 @@ def folds_for_goal(goal: Piece, size_cm: tuple[float, float] | None, garment: Ga
 
 
 def _cost(outcome: Outcome, goal: Piece) -> float:
+    if goal.place == "neat" and goal.detail != NONE:
+        return outcome.area
     if (share := _SHARES.get(goal.place)) is None:
         return len(outcome.folds)
     return len(outcome.folds) + MISSED * abs(log(outcome.area / share)) + _RAGGED * (outcome.rectangular < 0.8)

@@ -12,7 +12,8 @@ class TrainLanguage:
     @staticmethod
     def configure(parser: argparse.ArgumentParser) -> None:
         """Add the options."""
-        from polyfold_offline.training.learning import GOING_ON, Schedule
+        from polyfold_offline.training.learner import Schedule
+        from polyfold_offline.training.learning import GOING_ON
 
         parser.add_argument(
             "sentences", type=Path, help="folder of *.jsonl, for example experiments/language/sentences/train"
@@ -41,13 +42,8 @@ class TrainLanguage:
     def run(arguments: argparse.Namespace) -> int:
         """Train what is missing and say where the weights are."""
         from polyfold_offline.training.corpus import read_corpus
-        from polyfold_offline.training.learning import (
-            GOING_ON,
-            Schedule,
-            begin_with_encoder,
-            begin_with_reader,
-            train_reader,
-        )
+        from polyfold_offline.training.learner import Schedule
+        from polyfold_offline.training.learning import GOING_ON, begin_with_encoder, begin_with_reader, train_reader
 
         sentences = read_corpus(arguments.sentences)
         if arguments.reader is not None:

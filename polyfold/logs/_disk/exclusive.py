@@ -26,6 +26,9 @@ RENEWED = 30.0
 LOST = 120.0
 """Seconds without a sign of life after which a holder on another machine counts as gone."""
 
+SOFT_WAIT = 0.5
+"""Seconds to wait for a lock that is only a file: filelock 3.32 takes one whose holder is gone at its second try."""
+
 
 @contextmanager
 def exclusive(folder: str | Path) -> Iterator[Path]:
@@ -63,7 +66,7 @@ def _acquired(folder: Path) -> BaseFileLock:
         except (NotImplementedError, OSError) as error:
             if isinstance(error, OSError) and error.errno not in (errno.ENOLCK, errno.ENOTSUP, errno.ENOSYS):
                 raise
-            return _taken(SoftFileLock(folder / ".soft-lock"))
+            return _taken(SoftFileLock(folder / ".soft-lock"), SOFT_WAIT)
     except Timeout:
         holder = _holder(folder)
         raise ConfigError(
@@ -71,8 +74,8 @@ def _acquired(folder: Path) -> BaseFileLock:
         ) from None
 
 
-def _taken(lock: BaseFileLock) -> BaseFileLock:
-    lock.acquire(timeout=0)
+def _taken(lock: BaseFileLock, wait: float = 0.0) -> BaseFileLock:
+    lock.acquire(timeout=wait)
     return lock
 
 
