@@ -76,7 +76,7 @@ def load_obj(
     _check_flat(flat.distortion, flat.flipped, path)
     size = _size(unit * float(np.ptp(flat.points, axis=0).max()), size_m, kind, pattern, path)
     pixels = flat.points * np.array([1.0, -1.0])
-    outline = _silhouette(pixels, faces)
+    outline = _silhouette(pixels, faces, front)
     keypoints = {name: pixels[vertex] for name, vertex in places.items()}
     return twin_from_outline(outline, kind, keypoints, pattern, size, edge_length, name=path.stem)
 
@@ -118,7 +118,6 @@ def _keypoint_indices(path: Path, pattern: Pattern, count: int) -> dict[str, int
 
 def _sound_mesh(surface: ObjFile, path: Path) -> tuple[Floats, Faces]:
     """Vertices and consistently wound faces of one connected manifold."""
-    import trimesh
 
     mesh = _cleaned(surface)
     if len(_large_pieces(mesh)) > 1:
@@ -134,9 +133,34 @@ def _sound_mesh(surface: ObjFile, path: Path) -> tuple[Floats, Faces]:
             f"{path} is not a manifold: {(owners > 2).sum()} edges belong to three faces or more; repair it"
         )
     mesh = _largest_piece(mesh, path)
+    faces = np.asarray(mesh.faces, np.int64)
     if not mesh.is_winding_consistent:
-        trimesh.repair.fix_winding(mesh)
-    return np.asarray(mesh.vertices, float), np.asarray(mesh.faces, np.int64)
+        faces = _wound_alike(faces, mesh.face_adjacency, mesh.face_adjacency_edges)
+    return np.asarray(mesh.vertices, float), faces
+
+
+def _wound_alike(faces: Faces, neighbours: Faces, shared: Faces) -> Faces:
+    """Faces of one piece, all wound as the first is. trimesh 5.2 takes a quarter of a millisecond for each face.
+
+    Args:
+        faces: shape (T, 3).
+        neighbours: pairs of faces that share an edge, shape (K, 2).
+        shared: the vertices of that edge, shape (K, 2).
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import breadth_first_order
+
+    begins = faces[neighbours] == shared[:, None, :1]
+    ahead = (begins & (np.roll(faces, -1, axis=1)[neighbours] == shared[:, None, 1:])).any(axis=2)
+    turned = np.where(ahead[:, 0] == ahead[:, 1], -1, 1)
+    both = np.concatenate([neighbours, neighbours[:, ::-1]]).T
+    relation = coo_array((np.tile(turned, 2), (both[0], both[1])), (len(faces),) * 2).tocsr()
+    order, before = breadth_first_order(abs(relation), 0)
+    steps = np.asarray(relation[before[order[1:]], order[1:]]).ravel()
+    way = np.ones(len(faces), int)
+    for face, step in zip(order[1:].tolist(), steps.tolist(), strict=True):
+        way[face] = way[before[face]] * step
+    return np.where(way[:, None] < 0, faces[:, ::-1], faces)
 
 
 def _cleaned(surface: ObjFile) -> Any:
@@ -208,12 +232,26 @@ def _size(size: float, size_m: float | None, kind: str, pattern: Pattern, path: 
     return size
 
 
-def _silhouette(points: Floats, faces: Faces) -> Floats:
+def _silhouette(points: Floats, faces: Faces, front: NDArray[np.bool_]) -> Floats:
     """Outer outline of all faces, shape (K, 2)."""
     import shapely
 
-    size = np.ptp(points, axis=0).max()
-    polygons = shapely.polygons(points[faces])
-    union = shapely.union_all(shapely.buffer(polygons, 1e-4 * size, join_style="mitre"), grid_size=1e-6 * size)
+    size = float(np.ptp(points, axis=0).max())
+    panels = [_united(points[panel], size) for panel in (faces[front], faces[~front]) if len(panel)]
+    union = shapely.union_all(shapely.buffer(panels, _CRACK * size, join_style="mitre"), grid_size=1e-6 * size)
     largest = max(shapely.get_parts(union), key=lambda part: part.area)
     return shapely.get_coordinates(largest.exterior)[:-1]
+
+
+_CRACK = 1e-4
+"""Gaps between faces that are closed, as a share of the size."""
+
+
+def _united(triangles: Floats, size: float) -> Any:
+    """The union of one panel's triangles, shape (T, 3, 2), as a polygon."""
+    import shapely
+
+    polygons = shapely.polygons(triangles)
+    if shapely.coverage_is_valid(polygons):  # no face lies on another, as a rule: then it takes a tenth of the time
+        return shapely.coverage_union_all(polygons)
+    return shapely.union_all(shapely.buffer(polygons, _CRACK * size, join_style="mitre"), grid_size=1e-6 * size)

@@ -226,6 +226,16 @@ def test_two_grips_on_one_spot_go_together(simulator, garments):
     assert np.abs(strain(garments["pants"].mesh, after.positions)).max() < 0.25
 
 
+def test_cloth_that_is_dragged_to_the_corners_of_the_table_keeps_its_size_on_the_way_too(simulator):
+    square = plugins.generate_garment("square", 5008, 0.0155)
+    simulator.reset(square, 5008)
+    seen = []
+    simulator.record(lambda _: seen.append(strain(square.mesh, simulator.state().positions).max()), 20.0)
+    simulator.execute(Action(np.array([[183.0, 211.0], [228.0, 142.0]]), np.array([[395.0, 4.0], [4.0, 395.0]])))
+    assert max(seen) < 0.25
+    assert seen[-1] < 0.17
+
+
 def test_cloth_that_would_be_torn_slips_out_of_the_grip(simulator):
     square = plugins.generate_garment("square", 5008, 0.0155)
     simulator.reset(square, 5008)

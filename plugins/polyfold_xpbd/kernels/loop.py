@@ -14,12 +14,16 @@ from polyfold_xpbd.kernels.guarantee.apart import keep_apart
 from polyfold_xpbd.kernels.guarantee.close import Watch
 from polyfold_xpbd.kernels.listing import CROWDED, HORIZON, IMPOSSIBLE, PARTIAL, WHOLE, list_anew
 from polyfold_xpbd.kernels.motion import carry, damp, is_finite, predict, rests, velocities
-from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, let_go, stretch
+from polyfold_xpbd.kernels.sheet import bend, crease, hold_back, let_go, limit_strain, stretch
 from polyfold_xpbd.kernels.touching import find_edge_contacts, find_vertex_contacts, keep_contacts
 
 RUNNING, SETTLED, DIVERGED = 0, 1, 2
 LOOK_EVERY = 8
 """Substeps between looks at which listed pairs touch, where and which way."""
+LIMIT = 0.15
+"""Strain that no edge keeps. Cloth is stretched by a tenth at most in use (Provot 1995), knits by more."""
+BEFORE_CONTACTS, AFTER_CONTACTS = 16, 4
+"""Looks for edges beyond the limit in a substep: contacts may pull some out again, and are not to be undone."""
 STRETCHED = 1.5
 """Edges are taken to be no longer than the longest at rest by this factor.
 
@@ -120,10 +124,12 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             if grasped.shape[0] > 0:
                 hold_back(x, mobility, tied, anchors, lengths)
             stretch(x, mobility, edges, rest_lengths)
+            limit_strain(x, mobility, edges, rest_lengths, np.float32(LIMIT), BEFORE_CONTACTS)
             resolve(
                 x, previous, clock[4], bodies, weights, responses, contact_normals, inverse, source, load, thickness,
                 cloth_friction, recovery,
             )  # fmt: skip
+            limit_strain(x, mobility, edges, rest_lengths, np.float32(LIMIT), AFTER_CONTACTS)
             table(x, previous, mobility, table_load, floor, table_friction)
             parted = True
             if watch is not None:

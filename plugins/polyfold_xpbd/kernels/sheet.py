@@ -103,6 +103,37 @@ def stretch(x, mobility, edges, rest_lengths):
 
 
 @compiled
+def limit_strain(x, mobility, edges, rest_lengths, most, sweeps):
+    """Draw together the ends of edges that are stretched by more than ``most``, until none is, or so many times.
+
+    One sweep of :func:`stretch` leaves cloth soft where a grip drags all of it. Where nothing does, no edge is touched.
+
+    Args:
+        x: positions [m], shape (N, 3), changed.
+        mobility: inverse masses, as shares of the mean's; 0 for held particles, shape (N,).
+        edges: pairs of particles, shape (E, 2).
+        rest_lengths: [m], shape (E,).
+        most: the largest strain that an edge keeps.
+        sweeps: how often all edges are looked at, at most.
+    """
+    longest = np.float32(1.0) + most
+    for _ in range(sweeps):
+        over = False
+        for e in range(edges.shape[0]):
+            a, b = edges[e, 0], edges[e, 1]
+            dx, dy, dz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+            length_2, bound = dx * dx + dy * dy + dz * dz, longest * rest_lengths[e]
+            weight = mobility[a] + mobility[b]
+            if length_2 > bound * bound and weight > np.float32(0.0):
+                over = True
+                s = (np.float32(1.0) - bound / np.sqrt(length_2)) / weight
+                shift(x, a, s * mobility[a], dx, dy, dz)
+                shift(x, b, -s * mobility[b], dx, dy, dz)
+        if not over:
+            break
+
+
+@compiled
 def let_go(x, mobility, lightness, edges, rest_lengths, most):
     """Free held particles at whose edges the cloth is stretched by more than ``most``: they slip out of the grip.
 
