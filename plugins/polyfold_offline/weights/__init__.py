@@ -11,9 +11,9 @@ from polyfold.errors import ConfigError
 FOLDER = Path(__file__).parent
 
 SHA256 = {
-    "reader.safetensors": "e4e12a15e0b9205433b6783554ca302c7148aa52931ceb5c50ca0f0a7375decc",
+    "reader.safetensors": "68b3df10328135d3d49f5e57528d3382c49979438c184909a41c4128bfadd4a6",
     "pieces.json": "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037",
-    "words.json": "9805ac1c9e5750b38c07821b34c533d9fe93a5f12a6d3f41d8b08939a3a323ad",
+    "words.json": "2a438209fb79c616a71998994530a597e8015be85df34ba2b397772b231a0116",
 }
 
 SURE = 0.85
