@@ -27,6 +27,7 @@ def measured_on() -> set[str]:
     found = {sentence for task in suite.tasks for sentence in task.instructions}
     ambiguous = tomllib.loads(files("polyfold_standard").joinpath("tasks/ambiguous.toml").read_text("utf-8"))
     found |= {goal["text"] for goal in ambiguous["goal"]}
+    found |= {goal["text"] for goal in tomllib.loads((SETS / "wishes.toml").read_text("utf-8"))["goal"]}
     for name, only_held_out in (("instructions", False), ("sentences", True)):
         content = tomllib.loads((SETS / f"{name}.toml").read_text("utf-8"))
         entries = [*content["instruction"], *content["refuse"]]
