@@ -61,8 +61,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--llm", default="offline")
     parser.add_argument("--brief", action="store_true", help="do not list what was not reached")
     options = parser.parse_args(arguments)
-    file = options.file or Path(str(find("tasks", "ambiguous").target))
-    goals = [OpenTask(**goal) for goal in _read(file)]
+    goals = _goals(options.file)
     suite = load_suite(str(find("tasks", "polyfold70").target))
     planner, llm = create("planners", options.planner), create("llms", options.llm)
     found = [(goal, *outcome(goal, suite, planner, llm)) for goal in goals]
@@ -79,8 +78,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
             print(f"\n- {goal.garment}: “{goal.text}”\n  {verdict}: {why}")
 
 
-def _read(file: Path) -> list[dict[str, Any]]:
-    return tomllib.loads(file.read_text("utf-8"))["goal"]
+def _goals(file: Path | None) -> list[OpenTask]:
+    if file is None:
+        return list(load_suite(str(find("tasks", "ambiguous").target)).goals)
+    return [OpenTask(**goal) for goal in tomllib.loads(file.read_text("utf-8"))["goal"]]
 
 
 if __name__ == "__main__":

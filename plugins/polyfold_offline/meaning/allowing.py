@@ -54,6 +54,9 @@ def _settled(piece: Piece, fold: Fold, garment: Garment) -> Piece:
     return piece
 
 
+_OTHER_WAY = 0.9
+"""How far another end of as many folds is meant than the wish itself would take."""
+
 _LABOURED = 0.5
 """How far an end is meant that takes more folds than a wish needs: a triangle in half is a triangle too."""
 
@@ -66,6 +69,7 @@ def _wished(program: Program, lengths: Sequence[float], garment: Garment, folds:
         size = size_of(program, lengths)
         if not all(content(end) for _, content in demands(program[0], size, garment)):
             return 0.0
-        return 1.0 if len(folds_for_goal(program[0], size, garment)) == len(folds) else _LABOURED
+        chosen = folds_for_goal(program[0], size, garment)
+        return 1.0 if chosen == list(folds) else _OTHER_WAY if len(chosen) == len(folds) else _LABOURED
     except NotUnderstoodError:
         return 0.0

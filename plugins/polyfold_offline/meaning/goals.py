@@ -27,10 +27,14 @@ MISSED = 3.0
 _RAGGED = 2.0
 """Among ends of a wished size, one that fills less than 4/5 of its rectangle is as bad as this many more folds."""
 
+_SLIM = 0.2
+"""Among ends of as many folds the more compact is meant: a quarter is rather half as wide and tall than a strip."""
+
 _SHARES = {
     "three-quarters": 3 / 4, "half": 1 / 2, "third": 1 / 3, "quarter": 1 / 4, "sixth": 1 / 6, "eighth": 1 / 8,
     "sixteenth": 1 / 16,
 }  # fmt: skip
+_COMPACT = ("neat", *_SHARES)
 _NEARLY = 1.5
 """What is at most so many times as large as the smallest end counts as small as it gets."""
 
@@ -60,9 +64,10 @@ def folds_for_goal(goal: Piece, size_cm: tuple[float, float] | None, garment: Ga
 def _cost(outcome: Outcome, goal: Piece) -> float:
     if goal.place == "neat" and goal.detail != NONE:
         return outcome.area
+    cost = len(outcome.folds) + (_SLIM * (1.0 - outcome.slim) if goal.place in _COMPACT else 0.0)
     if (share := _SHARES.get(goal.place)) is None:
-        return len(outcome.folds)
-    return len(outcome.folds) + MISSED * abs(log(outcome.area / share)) + _RAGGED * (outcome.rectangular < 0.8)
+        return cost
+    return cost + MISSED * abs(log(outcome.area / share)) + _RAGGED * (outcome.rectangular < 0.8)
 
 
 def demands(goal: Piece, size_cm: tuple[float, float] | None, garment: Garment) -> Iterator[tuple[str, Test]]:
