@@ -171,6 +171,9 @@ def test_faults_follow_from_what_is_done_and_not_from_the_garment_alone():
 
 
 def test_the_simulator_inside_gets_its_parameters():
-    simulator = plugins.create("simulators", "faulty", {"inner_params": {"guaranteed": True}})
-    simulator.reset(plugins.generate_garment("square", 2000, 0.04), 1)
-    assert simulator.state().extra["guaranteed"]
+    def seen(fill):
+        simulator = plugins.create("simulators", "faulty", {"inner_params": {"fill": fill, "rotation_deg": 0.0}})
+        simulator.reset(plugins.generate_garment("square", 2000, 0.04), 1)
+        return np.ptp(np.array(list(simulator.state().keypoint_pixels().values())), axis=0).max()
+
+    assert seen(0.4) == pytest.approx(seen(0.8) / 2, rel=0.02)
