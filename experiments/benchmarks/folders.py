@@ -128,7 +128,7 @@ def _race(work: Work, whole: dict[str, Path], out: Path, rng: random.Random) -> 
 
 def _harm(work: Work, whole: dict[str, Path], out: Path, rng: random.Random) -> tuple[str, str]:
     shutil.copytree(whole[work.name], out)
-    files = sorted(file for file in out.rglob("*") if file.is_file() and file.suffix not in PICTURES)
+    files = sorted(file for file in out.rglob("*") if file.is_file() and _matters(file))
     file = rng.choice(files)
     how = rng.choice(list(HARMS))
     HARMS[how](file, rng)
@@ -142,6 +142,11 @@ def _harm(work: Work, whole: dict[str, Path], out: Path, rng: random.Random) -> 
         return what, "whole again" if work.content(out) == work.content(whole[work.name]) else "OTHER CONTENT"
     kept = all(other.exists() and _digest(other) == digest for other, digest in others.items())
     return what, "told, the others kept" if kept else "LOST"
+
+
+def _matters(file: Path) -> bool:
+    """Whether anything is read from a file; locks are empty."""
+    return file.suffix not in PICTURES and file.stat().st_size > 1
 
 
 def _flip(file: Path, rng: random.Random) -> None:
