@@ -47,6 +47,8 @@ levels = 2
 COLLECTION = ["--folds", "24", "--seeds", "2000-2001", "--edge-length", "0.05", "--mix", "uniform=1"]
 PICTURES = {".webp", ".png"}
 """Files that nothing is read from."""
+WRONG = ("ENDED OTHERWISE", "LOST OR DOUBLED", "TRACEBACK", "OTHER CONTENT", "LOST")
+"""Outcomes that must not be."""
 HEAD_START = 1.5
 """The second process of a pair begins up to so long after the first [s]."""
 
@@ -89,7 +91,7 @@ def main(arguments: list[str] | None = None) -> int:
         print()
         harms = [_harm(works[k % len(works)], whole, root / f"damaged-{k}", rng) for k in range(chosen.damaged)]
         _print("damaged folders", Counter(harms))
-    return int(any(verdict.isupper() for _, verdict in [*races, *harms]))
+    return int(any(verdict in WRONG for _, verdict in [*races, *harms]))
 
 
 def _undisturbed(root: Path) -> tuple[list[Work], dict[str, Path]]:

@@ -131,6 +131,22 @@ def test_a_folder_with_another_training_is_refused(folds_folder, weights):
         train(small(folds_folder, seed=9), weights["csam"].parent, "cpu", progress=False)
 
 
+def test_a_flipped_bit_of_a_checkpoint_is_found(folds_folder, weights, tmp_path):
+    out = shutil.copytree(weights["csam"].parent, tmp_path / "copy")
+    content = bytearray((out / "checkpoint.safetensors").read_bytes())
+    content[-100] ^= 1
+    (out / "checkpoint.safetensors").write_bytes(bytes(content))
+    with pytest.raises(ConfigError, match=r"is damaged.*remove it to train from the beginning"):
+        train(small(folds_folder), out, "cpu", progress=False)
+
+
+def test_a_damaged_note_of_a_training_is_no_other_training(folds_folder, weights, tmp_path):
+    out = shutil.copytree(weights["csam"].parent, tmp_path / "copy")
+    (out / "training.json").write_text("{")
+    with pytest.raises(ConfigError, match=r"training\.json is damaged.*remove that file to go on"):
+        train(small(folds_folder), out, "cpu", progress=False)
+
+
 def test_a_collapsed_network_stops_the_training(folds_folder, tmp_path, monkeypatch):
     monkeypatch.setattr(learner, "GUARD_STEPS", 1)
     with pytest.raises(ConfigError, match="collapsed"):

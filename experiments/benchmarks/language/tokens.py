@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import os
 import statistics
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -93,7 +94,7 @@ def _episodes(planner: str, options: argparse.Namespace) -> list[list[Asked]]:
         try:
             plan_ideally(task.instructions[0], laid, create("planners", planner), llm)
         except PlanError as error:
-            print(f"{task.id}: {error}")
+            print(f"{task.id}: {error}", file=sys.stderr)
         found.append(llm.asked)
     return found
 

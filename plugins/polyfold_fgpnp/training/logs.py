@@ -23,14 +23,23 @@ class Logs:
 
     def __init__(self, out: Path, done: int) -> None:
         self._lines = JsonLines(out / METRICS)
-        self._drop_after(done)
+        records = self._sound_records()
+        self._drop_after(records, done)
+        if lacking := sorted(set(range(1, done + 1)) - {record["epoch"] for record in records}):
+            named = ", ".join(map(str, lacking))
+            warnings.warn(f"{self._lines.path} lacks epoch {named}; the weights don't depend on it", stacklevel=2)
         self._board = _tensorboard(out, done)
 
-    def _drop_after(self, done: int) -> None:
+    def _sound_records(self) -> list[dict[str, Any]]:
+        """What was logged; damaged lines are set aside."""
         records, damaged = self._lines.sound(_logged)
         if damaged:
             beside = self._lines.set_aside(damaged)
-            warnings.warn(f"{len(damaged)} damaged lines of {self._lines.path} are set aside in {beside}", stacklevel=2)
+            warnings.warn(f"{len(damaged)} damaged lines of {self._lines.path} are set aside in {beside}", stacklevel=3)
+        return records
+
+    def _drop_after(self, records: list[dict[str, Any]], done: int) -> None:
+        """End the file behind the last of its first epochs, each standing once, that are done."""
         end, last = 0, 0
         for record, (_, stop) in zip(records, self._lines.lines(), strict=False):
             if not last < record["epoch"] <= done:
@@ -38,9 +47,6 @@ class Logs:
             end, last = stop, record["epoch"]
         if self._lines.path.exists():
             os.truncate(self._lines.path, end)
-        if lacking := sorted(set(range(1, done + 1)) - {record["epoch"] for record in records}):
-            named = ", ".join(map(str, lacking))
-            warnings.warn(f"{self._lines.path} lacks epoch {named}; the weights don't depend on it", stacklevel=2)
 
     def __enter__(self) -> Logs:
         return self

@@ -63,7 +63,7 @@ def folds_for_goal(goal: Piece, size_cm: tuple[float, float] | None, garment: Ga
 
 def _cost(outcome: Outcome, goal: Piece) -> float:
     if goal.place == "neat" and goal.detail != NONE:
-        return outcome.area
+        return outcome.area  # so many folds were asked for, all ends have as many
     cost = len(outcome.folds) + (_SLIM * (1.0 - outcome.slim) if goal.place in _COMPACT else 0.0)
     if (share := _SHARES.get(goal.place)) is None:
         return cost

@@ -27,7 +27,7 @@ BEFORE_CONTACTS, AFTER_CONTACTS = 16, 4
 STRETCHED = 1.5
 """Edges are taken to be no longer than the longest at rest by this factor.
 
-What is stretched farther, and folds stretch a few edges by two thirds, may be listed as late as with the whole list.
+What is stretched farther may be listed as late as with the whole list.
 """
 REST_OVER = 40
 """Substeps over which the cloth is watched for rest."""
