@@ -18,7 +18,7 @@ USUAL = "usual"
 
 
 class ComponentSpec(BaseModel):
-    """A component by name, with parameters. In TOML ``policy = "caso"`` or a table ``[policy]`` with ``name``."""
+    """A component by name, with parameters. In TOML ``policy = "farthest"`` or a table ``[policy]`` with ``name``."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -31,7 +31,9 @@ class ComponentSpec(BaseModel):
         if isinstance(value, str):
             return {"name": value}
         if not isinstance(value, dict | ComponentSpec):
-            raise ValueError(f'{value!r} names no component; write a name, for example "caso", or a table with a name')
+            raise ValueError(
+                f'{value!r} names no component; write a name, for example "farthest", or a table with a name'
+            )
         if isinstance(value, dict) and "params" not in value:
             return {"name": value.get("name"), "params": {key: v for key, v in value.items() if key != "name"}}
         return value
@@ -49,7 +51,7 @@ class Experiment(BaseModel):
     segmenter: ComponentSpec = ComponentSpec(name="colour")
     grounding: ComponentSpec = ComponentSpec(name="polygon")
     planner: ComponentSpec = ComponentSpec(name="hierarchical")
-    policy: ComponentSpec = ComponentSpec(name="caso")
+    policy: ComponentSpec = ComponentSpec(name="affordance-pair")
     llm: ComponentSpec = ComponentSpec(name="offline")
     guidance: Literal["steps", "final"] = "steps"
     """What agents that need guidance get: accurate subgoals, or the final goal alone."""

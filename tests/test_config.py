@@ -14,7 +14,7 @@ def test_a_file_says_what_an_experiment_is_made_of(tmp_path):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ('polcy = "caso"', "did you mean 'policy'"),
+        ('polcy = "affordance-pair"', "did you mean 'policy'"),
         ("policy = 3", "3 names no component; write a name"),
         ("policy = [", "not valid TOML.*; correct it"),
         (r'llm = "replay:C:\x\new.jsonl"', r"in single quotes, 'replay:C:\\x\\new\.jsonl'$"),
@@ -46,5 +46,5 @@ def test_missing_file():
 def test_override_leaves_the_original_alone():
     experiment = config.Experiment()
     changed = experiment.override({"policy": "farthest"})
-    assert (experiment.policy.name, changed.policy.name) == ("caso", "farthest")
-    assert changed.override({"policy": "caso"}) == experiment
+    assert (experiment.policy.name, changed.policy.name) == ("affordance-pair", "farthest")
+    assert changed.override({"policy": "affordance-pair"}) == experiment

@@ -95,7 +95,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--first-seed", type=int, default=0, help="0 for the evaluation garments; develop from 2000")
     parser.add_argument("--agent", action="append", choices=AGENTS, help="only this agent; may be repeated")
     parser.add_argument("--job", action="append", choices=[job.task for job in JOBS], help="only this job")
-    parser.add_argument("--policy", default="caso", help="policy of the polyfold agent (default: caso)")
+    parser.add_argument(
+        "--policy", default="affordance-pair", help="policy of the polyfold agent (default: affordance-pair)"
+    )
     parser.add_argument("--out", type=Path, default=Path("runs/benchmark-loop"), help="run directory, resumed")
     chosen = parser.parse_args(arguments)
     plugins.register("tasks", "benchmark-loop", str(SUITE))

@@ -116,15 +116,17 @@ def _groundings(results: Results) -> Sequence[Section]:
 
 
 def _policies(results: Results) -> Sequence[Section]:
-    others = [name for name in results.study.variants if name != "caso"]
-    return [*_table(results), *_pairs(*(("caso", other) for other in others))(results)]
+    others = [name for name in results.study.variants if name != "affordance-pair"]
+    return [*_table(results), *_pairs(*(("affordance-pair", other) for other in others))(results)]
 
 
 STUDIES = (
     StudyStep("main", 1.2, _main, also=(("final_goal.md", _several_folds),), pictured=True),
     StudyStep("noise_floor", 0.1, lambda results: [("", polyfold.table(results, noise=results).markdown())]),
     StudyStep("recovery", 0.4, _recovery),
-    StudyStep("policies", 0.4, _policies, variants=("caso", "farthest", "vertex-random"), garments=10),
+    StudyStep(
+        "policies", 0.4, _policies, variants=("affordance-pair", "caso", "farthest", "vertex-random"), garments=10
+    ),
     StudyStep("displaced", 0.2, _displaced),
     StudyStep("ambiguous", 0.2, _table),
     StudyStep("planners", 0.5, _planners),

@@ -6,19 +6,18 @@ from polyfold.plugins.hookspecs import hookimpl
 @hookimpl
 def register_policies(register):
     """Register the policies."""
-    register("caso", "polyfold_fgpnp.policies.caso:Caso", "the best pair of picks by affordance, no learning")
-    register(
-        "vertex-random", "polyfold_fgpnp.policies.caso:VertexRandom", "a random polygon vertex, the second pick by caso"
-    )
-    register(
-        "farthest", "polyfold_fgpnp.policies.caso:Farthest", "the point farthest from the line, the second pick by caso"
-    )
-    learned = "polyfold_fgpnp.policies.learned"
-    register("csam+caso", f"{learned}:CoupledActionMap", "the best point of a learned map, the second pick by caso")
-    register("vertex-learned", f"{learned}:VertexLearned", "the best polygon vertex by the learned map, then caso")
+    plain = "polyfold_fgpnp.policies.geometric"
+    register("affordance-pair", f"{plain}:AffordancePair", "the best pair of picks by affordance, no learning")
+    register("caso", f"{plain}:Caso", "a random contour point, the second pick by conditional affordance optimisation")
+    register("vertex-random", f"{plain}:VertexRandom", "a random polygon vertex, the second pick by caso")
+    register("farthest", f"{plain}:Farthest", "the point farthest from the line, the second pick by caso")
+    coupled, learned = "polyfold_fgpnp.policies.coupled", "polyfold_fgpnp.policies.learned"
+    register("csam+caso", f"{coupled}:CoupledActionMap", "the best point of a learned map, the second pick by caso")
+    register("vertex-learned", f"{coupled}:VertexLearned", "the best polygon vertex by the learned map, then caso")
     register("1sam", f"{learned}:OneActionMap", "one arm at the best point of a learned map")
     register("2sam", f"{learned}:TwoActionMaps", "two arms at the best points of two learned maps")
-    register("pair", f"{learned}:PairValue", "the two points with the best learned joint value")
+    register("pair+caso", f"{coupled}:CoupledPairValue", "the best point with its partner by a learned joint value")
+    register("pair", f"{coupled}:PairValue", "the two points with the best learned joint value")
 
 
 @hookimpl

@@ -1,7 +1,7 @@
 """Studies: a grid of variants over tasks and garments, defined in TOML or in a few lines of Python.
 
 >>> import polyfold
->>> study = polyfold.ablate(polyfold.load("experiments/smoke.toml"), "policy", ["caso", "farthest"])
+>>> study = polyfold.ablate(polyfold.load("experiments/smoke.toml"), "policy", ["affordance-pair", "farthest"])
 >>> results = polyfold.run(study, "runs/policies")
 >>> polyfold.table(results)
 """

@@ -44,7 +44,7 @@ def folder(tmp_path_factory):
         edge_length=0.03,
         criteria=("compact", "lenient"),
     )
-    study = polyfold.grid(base, {"agent": ["oracle", "noop"], "policy": ["caso"]})
+    study = polyfold.grid(base, {"agent": ["oracle", "noop"], "policy": ["affordance-pair"]})
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("POLYFOLD_CACHE", str(folder / "cache"))
         polyfold.run(study, folder / "run", progress=False)
@@ -59,7 +59,9 @@ def results(folder):
 
 
 def test_its_metric_decides_success(results):
-    oracle, noop = ({r.task: r for r in results.of(name)} for name in ("oracle, caso", "noop, caso"))
+    oracle, noop = (
+        {r.task: r for r in results.of(name)} for name in ("oracle, affordance-pair", "noop, affordance-pair")
+    )
     for record in oracle.values():
         assert record.success == {"compact": record.metrics["covered-area"] <= 90.0, "lenient": True}
         assert record.succeeded == record.success["compact"], "the study's own criterion is the first"
@@ -73,7 +75,7 @@ def test_it_stands_in_tables_and_differences_with_unit_and_digits(results):
     assert table.headers[3] == "covered [%]", "what the study's own criterion bounds comes first"
     assert table.headers[-2:] == ["success %", "lenient %"]
     assert "100.00 [100.00, 100.00]" in table.csv()
-    assert "covered [%]" in polyfold.compare(results, "oracle, caso", "noop, caso").headers
+    assert "covered [%]" in polyfold.compare(results, "oracle, affordance-pair", "noop, affordance-pair").headers
     assert polyfold.table(results, ["covered-area", "compact"]).headers[3:] == ["covered [%]", "success %"]
 
 
@@ -101,7 +103,7 @@ def test_factors_of_a_grid_are_columns_of_a_data_frame(results):
     assert len(frame) == 4
     effect = frame.pivot_table(index="agent", values=["covered-area", "success_lenient"])
     assert effect.loc["noop", "covered-area"] == 100.0
-    assert set(frame["policy"]) == {"caso"}
+    assert set(frame["policy"]) == {"affordance-pair"}
 
 
 def test_a_criterion_that_nobody_registered_is_named(folder):

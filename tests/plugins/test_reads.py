@@ -8,7 +8,7 @@ from polyfold.logs._dependencies import fingerprint
 
 
 def test_the_weights_of_a_learned_policy_count():
-    assert set(fingerprint([Experiment.of(policy="csam+caso")]).files) == {"polyfold_fgpnp: pair.safetensors"}
+    assert set(fingerprint([Experiment.of(policy="pair+caso")]).files) == {"polyfold_fgpnp: pair.safetensors"}
     assert set(fingerprint([Experiment.of(policy="1sam")]).files) == {"polyfold_fgpnp: 1sam.safetensors"}
     assert not fingerprint([Experiment.of(policy="caso")]).files
 

@@ -87,7 +87,9 @@ def record(variant, task, seed, won):
 
 
 def study(points):
-    variants = {"caso": {"policy": "caso"}} | {point.variant: {"policy": "csam+caso"} for point in points}
+    variants = {"affordance-pair": {"policy": "affordance-pair"}} | {
+        point.variant: {"policy": "csam+caso"} for point in points
+    }
     return {"name": "made-up", "tasks": TASKS, "garments": 4, "variants": variants}
 
 
@@ -103,7 +105,7 @@ def test_a_study_of_trainings_folds_with_each_of_their_weights_and_without(tmp_p
     file.write_text(capsys.readouterr().out)
     found = load(file)
     wanted = {Learned(10000, seed, epoch).variant: seed for seed in (0, 1) for epoch in (2, 4)}
-    assert set(found.variants) == {"caso", *wanted}
+    assert set(found.variants) == {"affordance-pair", *wanted}
     assert (found.garments, found.reference, len(found.tasks)) == (2, "ideal", 20)
     policy = found.variants["folds=10000,seed=1,epoch=2"]["policy"]
     assert policy == {"name": "csam+caso", "weights": f"{runs[1]}/weights-0002.safetensors"}
@@ -143,7 +145,7 @@ def test_the_folds_of_a_training_are_those_it_used(tmp_path):
 
 def test_names_of_variants_are_read_back():
     assert learned(Learned(2500, 3, 60).variant) == Learned(2500, 3, 60)
-    assert learned("caso") is None
+    assert learned("affordance-pair") is None
 
 
 def test_the_training_curve_is_mean_and_deviation_over_seeds(tmp_path, capsys):
@@ -160,7 +162,7 @@ def test_the_training_curve_is_mean_and_deviation_over_seeds(tmp_path, capsys):
     text = capsys.readouterr().out
     assert cells(text, 2)[:6] == ["2", "0.600 ± 0.141", "0.380 ± 0.028", "2", "100.0 ± 0.0", "0.0 ± 0.0"]
     assert cells(text, 4)[3:7] == ["2", "87.5 ± 17.7", "87.5 ± 17.7", "87.5 ± 17.7"]
-    assert cells(text, "caso")[4:7] == ["100.0", "100.0", "100.0"]
+    assert cells(text, "affordance-pair")[4:7] == ["100.0", "100.0", "100.0"]
     assert "the same 8 episodes: 2 tasks, 8 garments" in text
     assert png.stat().st_size > 10_000
     assert len(training_table([read_run(run) for run in runs]).rows) == EPOCHS
@@ -180,7 +182,7 @@ def test_data_sizes_are_compared_after_the_last_epoch(tmp_path, capsys):
     text = capsys.readouterr().out
     assert "| all, moved part [mm] |" in text
     assert cells(text, 10000)[4] == "5.0"
-    assert cells(text, "caso")[4] == "50.0"
+    assert cells(text, "affordance-pair")[4] == "50.0"
     run = training(tmp_path / "s0", 0)
     assert curves.main(["training", str(run), "--evaluation", str(out)]) == 1
     assert "several data sizes" in capsys.readouterr().err
@@ -191,10 +193,10 @@ def test_data_sizes_are_compared_after_the_last_epoch(tmp_path, capsys):
 def test_only_episodes_count_that_every_variant_has(tmp_path):
     made = study([Learned(10000, 0, 4)])
     out = evaluated(tmp_path / "evaluation", made, lambda variant, kind, seed: seed == 0, garments=(0,))
-    run_directory(out, made).append(record("caso", TASKS[0], 1, False))
+    run_directory(out, made).append(record("affordance-pair", TASKS[0], 1, False))
     found = Scores(open_results(out))
     assert len(found.episodes) == 2
-    assert found.mean("caso") == 100.0
+    assert found.mean("affordance-pair") == 100.0
 
 
 def test_the_interval_draws_garments_and_not_episodes(tmp_path):

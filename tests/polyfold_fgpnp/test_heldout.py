@@ -43,20 +43,25 @@ def mean(cell):
 def test_tables_of_policies_and_maps(folder, capsys):
     network = NetworkConfig(variant="csam", base=4, levels=2)
     weights = train(TrainingConfig(data=(str(folder),), network=network, epochs=1), folder / "t", "cpu", progress=False)
-    heldout.main([str(folder), "caso", f"csam+caso={weights}"])
+    heldout.main([str(folder), "affordance-pair", f"csam+caso={weights}"])
     text = capsys.readouterr().out
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| ")]
     first, second = (rows[:4], rows[4:])
     assert [row[0] for row in first[1:]] == ["distance", "affordance", f"csam+caso={weights}"]
-    assert [row[0] for row in second[1:]] == ["random first pick", "caso", rows[3][0], "best of the picks tried"]
+    assert [row[0] for row in second[1:]] == [
+        "random first pick",
+        "affordance-pair",
+        rows[3][0],
+        "best of the picks tried",
+    ]
     table = dict(zip((row[0] for row in second[1:]), second[1:], strict=True))
     data = load_dataset(folder)
     outcomes = [data.error_mm[trials] for trials in tried(data)]
-    executed = [record["error_mm"] for record in JsonLines(folder / "policies" / "caso.jsonl").read()]
+    executed = [record["error_mm"] for record in JsonLines(folder / "policies" / "affordance-pair.jsonl").read()]
     for name, errors in (
         ("random first pick", [found.mean() for found in outcomes]),
         ("best of the picks tried", [found.min() for found in outcomes]),
-        ("caso", executed),
+        ("affordance-pair", executed),
     ):
         assert table[name][1] == str(data.states)
         assert mean(table[name][2]) == pytest.approx(np.mean(errors), abs=0.06), name
@@ -82,17 +87,17 @@ class Refusing:
 
 
 def test_what_was_folded_is_kept_and_not_folded_again(folder, capsys):
-    heldout.main([str(folder), "caso"])
+    heldout.main([str(folder), "affordance-pair"])
     before = capsys.readouterr().out
-    kept = folder / "policies" / "caso.jsonl"
+    kept = folder / "policies" / "affordance-pair.jsonl"
     records = [json.loads(line) for line in kept.read_text().splitlines()]
     assert [len(record["error_mm"]) for record in records] == [4, 4]
     changed = [{**record, "error_mm": [999.0] * 4} for record in records]
     kept.write_text("".join(json.dumps(record) + "\n" for record in changed) + '{"job": 0, "fl')
-    heldout.main([str(folder), "caso"])
-    assert "| caso | 8 | 999.0 [999.0, 999.0] |" in capsys.readouterr().out
+    heldout.main([str(folder), "affordance-pair"])
+    assert "| affordance-pair | 8 | 999.0 [999.0, 999.0] |" in capsys.readouterr().out
     kept.unlink()
-    heldout.main([str(folder), "caso"])
+    heldout.main([str(folder), "affordance-pair"])
     assert capsys.readouterr().out == before
 
 
@@ -103,7 +108,7 @@ def test_states_that_come_out_differently_today_are_refused(folds, folds_folder,
         changed.write(1, {**shard, "travel_mm": 1.1 * shard["travel_mm"]})
     changed.finish()
     with pytest.raises(SystemExit, match="can't be made again"):
-        heldout.main([str(tmp_path), "caso"])
+        heldout.main([str(tmp_path), "affordance-pair"])
 
 
 def test_a_prediction_that_orders_all_picks_right_has_rank_correlation_one(folds):

@@ -40,6 +40,6 @@ def test_maps_are_drawn_for_any_policy_that_values_picks(tmp_path):
 
 
 def test_a_policy_without_values_is_refused_with_the_reason(tmp_path, capsys):
-    assert main(["maps", "--policy", "caso", "--out", str(tmp_path / "maps.png")]) != 0
+    assert main(["maps", "--policy", "affordance-pair", "--out", str(tmp_path / "maps.png")]) != 0
     assert "csam+caso" in capsys.readouterr().err
     assert not (tmp_path / "maps.png").exists()

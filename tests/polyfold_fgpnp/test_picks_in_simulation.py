@@ -6,11 +6,11 @@ which way a layer slips. So what is claimed here of a few folds is claimed of fl
 
 import numpy as np
 import pytest
-from polyfold_fgpnp.data.interaction import Situation, execute, scene_of
 from polyfold_fgpnp.data.outcomes import contour_reward, expect, particle_reward
+from polyfold_fgpnp.data.situations import Situation, execute, scene_of
 from polyfold_fgpnp.data.trials import Flap, draw_trials
 from polyfold_fgpnp.policies.actions import PickConfig, to_action
-from polyfold_fgpnp.policies.caso import Caso
+from polyfold_fgpnp.policies.geometric import AffordancePair
 from polyfold_fgpnp.policies.lines import RandomLine
 from polyfold_fgpnp.policies.region import fold_region
 
@@ -50,7 +50,7 @@ def rewards_of(task_id):
     drawn = {name: draw_trials(Flap(region), {name: PICKS}, np.random.default_rng(1)) for name in ("single", "uniform")}
     config = PickConfig()
     return {
-        "caso": [reward(Caso().act(line, scene, rng))],
+        "affordance-pair": [reward(AffordancePair().act(line, scene, rng))],
         **{
             name: [reward(to_action(region, trial.first, trial.second, config)) for trial in trials]
             for name, trials in drawn.items()
@@ -59,16 +59,16 @@ def rewards_of(task_id):
 
 
 def test_the_best_pair_folds_every_kind_well(rewards):
-    assert (rewards["caso"] > 0.7).all()
+    assert (rewards["affordance-pair"] > 0.7).all()
 
 
 def test_the_best_pair_is_better_than_one_arm_at_a_random_point(rewards):
-    less = rewards["caso"].mean(1) - rewards["single"].mean(1)
+    less = rewards["affordance-pair"].mean(1) - rewards["single"].mean(1)
     assert (less > 0.1).all(), "for every kind, by both rewards"
 
 
 def test_affordance_beats_chance(rewards):
-    less = rewards["caso"].mean(1) - rewards["uniform"].mean(1)
+    less = rewards["affordance-pair"].mean(1) - rewards["uniform"].mean(1)
     assert (less.mean(0) > 0).all(), "over all kinds, by both rewards"
 
 

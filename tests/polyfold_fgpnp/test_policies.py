@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from drawn_scenes import CENTRE, SQUARE, TSHIRT, model_of, near, scene_of
-from polyfold_fgpnp.policies.caso import Caso, Farthest, VertexRandom
+from polyfold_fgpnp.policies.geometric import AffordancePair, Caso, Farthest, VertexRandom
 from pydantic import ValidationError
 
 from polyfold import plugins
@@ -11,7 +11,7 @@ from polyfold.errors import PlanError
 from polyfold.geometry import FoldLine, rotate
 from polyfold.plugins.interfaces import Policy
 
-POLICIES = {"caso": Caso, "vertex-random": VertexRandom, "farthest": Farthest}
+POLICIES = {"affordance-pair": AffordancePair, "caso": Caso, "vertex-random": VertexRandom, "farthest": Farthest}
 every_policy = pytest.mark.parametrize("policy", POLICIES.values(), ids=POLICIES)
 
 LINES = {
@@ -58,9 +58,9 @@ def test_the_same_scene_gives_the_same_action(policy, corners, line):
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, 1.0, 2.5])
-def test_caso_takes_the_far_corners(angle):
+def test_the_best_pair_is_at_the_far_corners(angle):
     def picks(corners, line):
-        return act(Caso(Caso.Config(slide=0)), corners, line, angle)[2].picks
+        return act(AffordancePair(AffordancePair.Config(slide=0)), corners, line, angle)[2].picks
 
     def turned(*names, of):
         return rotate(np.array([of[name] for name in names], float), angle, CENTRE)
@@ -71,16 +71,26 @@ def test_caso_takes_the_far_corners(angle):
     assert near(picks(*LINES["hem"]), *turned("hem_left", "hem_right", of=TSHIRT), within=8)
 
 
-def test_caso_slides_two_picks_towards_each_other_and_leaves_one_alone():
-    wide = act(Caso(Caso.Config(slide=0)), *LINES["half"])[2]
-    narrow = act(Caso(), *LINES["half"])[2]
+def test_the_best_pair_slides_two_picks_towards_each_other_and_leaves_one_alone():
+    wide = act(AffordancePair(AffordancePair.Config(slide=0)), *LINES["half"])[2]
+    narrow = act(AffordancePair(), *LINES["half"])[2]
     assert np.ptp(narrow.picks[:, 1]) == pytest.approx(0.8 * np.ptp(wide.picks[:, 1]), rel=0.05)
-    assert near(act(Caso(), *LINES["corner"])[2].picks, SQUARE["top_left"])
+    assert near(act(AffordancePair(), *LINES["corner"])[2].picks, SQUARE["top_left"])
 
 
 def test_farthest_starts_from_the_point_farthest_from_the_line():
     picks = act(Farthest(), TSHIRT, LINES["side"][1])[2].picks
     assert np.hypot(*(picks - TSHIRT["sleeve_top_left"]).T).min() < 6
+
+
+def test_caso_starts_anywhere_on_the_contour_and_takes_the_best_partner():
+    actions = [act(Caso(Caso.Config(one_arm_px=0)), *LINES["half"], seed=seed)[2] for seed in range(30)]
+    firsts, corners = set(), np.array([SQUARE["top_left"], SQUARE["bottom_left"]])
+    for action in actions:
+        away = np.hypot(*(action.picks[:, None] - corners).transpose(2, 0, 1)).min(axis=1)
+        assert away.min() < 6, "the partner is a corner, whatever the first pick"
+        firsts.add(tuple(np.round(action.picks[int(np.argmax(away))], -1)))
+    assert len(firsts) > 15, "the first pick is drawn"
 
 
 def test_vertex_random_takes_only_vertices_left_of_the_line_and_all_of_them():
@@ -108,7 +118,9 @@ def test_a_line_with_no_cloth_on_its_left_is_refused(policy):
 def test_folded_cloth_is_picked_through_all_layers():
     line = FoldLine((200, 350), (200, 50))
     scene = scene_of(model_of(SQUARE).fold(line))
-    action = Caso(Caso.Config(slide=0)).act(FoldLine((150, 200), (350, 200)), scene, np.random.default_rng(0))
+    action = AffordancePair(AffordancePair.Config(slide=0)).act(
+        FoldLine((150, 200), (350, 200)), scene, np.random.default_rng(0)
+    )
     assert near(action.picks, (200, 100), (300, 100))
 
 

@@ -12,7 +12,8 @@ from drawn_scenes import SQUARE, TSHIRT, model_of, scene_of
 from few_folds import MIX
 from polyfold_fgpnp.data.dataset import load_dataset
 from polyfold_fgpnp.policies import weights as weights_module
-from polyfold_fgpnp.policies.learned import CoupledActionMap, OneActionMap, PairValue, TwoActionMaps, VertexLearned
+from polyfold_fgpnp.policies.coupled import CoupledActionMap, CoupledPairValue, PairValue, VertexLearned
+from polyfold_fgpnp.policies.learned import OneActionMap, TwoActionMaps
 from polyfold_fgpnp.policies.networks import NetworkConfig, ValueNetwork
 from polyfold_fgpnp.policies.pairs import pair_geometry
 from polyfold_fgpnp.policies.region import fold_region
@@ -37,6 +38,7 @@ POLICIES = {
     "2sam": TwoActionMaps,
     "vertex-learned": VertexLearned,
 }
+COUPLED = {"pair+caso": CoupledPairValue}
 LINES = {
     "half": (SQUARE, FoldLine((200, 350), (200, 50))),
     "sleeve": (TSHIRT, FoldLine((135, 180), (130, 85))),
@@ -183,10 +185,10 @@ def test_weights_that_were_changed_are_refused(weights, tmp_path):
         load_weights(tmp_path / "text.safetensors")
 
 
-@pytest.mark.parametrize("variant", [*POLICIES, "csam with pair", "vertex-learned with pair"])
+@pytest.mark.parametrize("variant", [*POLICIES, "pair+caso with pair", "vertex-learned with csam"])
 @pytest.mark.parametrize(("corners", "line"), LINES.values(), ids=LINES)
 def test_learned_policies_pick_on_the_cloth_left_of_the_line(variant, corners, line, weights):
-    cls = POLICIES[variant.split()[0]]
+    cls = (POLICIES | COUPLED)[variant.split()[0]]
     policy = cls(cls.Config(weights=str(weights[variant.split()[-1]])))
     assert isinstance(policy, Policy)
     scene = scene_of(model_of(corners))
@@ -212,7 +214,7 @@ def test_canonical_maps_are_symmetric_on_a_symmetric_flap(weights):
 
 
 def test_every_learned_policy_is_registered():
-    assert {"csam+caso", "1sam", "2sam", "vertex-learned"} <= set(plugins.names("policies"))
+    assert {"csam+caso", "pair+caso", "1sam", "2sam", "vertex-learned", "pair"} <= set(plugins.names("policies"))
 
 
 @pytest.fixture
@@ -239,7 +241,7 @@ def test_weights_of_the_package_go_by_name(shipping, weights):
         plugins.create("policies", "2sam", {"weights": "csam-fine"})
 
 
-def test_weights_are_read_again_only_when_their_file_has_changed(shipping, weights, monkeypatch):
+def test_weights_are_read_again_only_when_their_file_has_changed(shipping, folds_folder, tmp_path, monkeypatch):
     def values():
         policy = plugins.create("policies", "csam+caso", {"weights": "csam"})
         return policy.action_map(LINES["half"][1], scene_of(model_of(SQUARE)))[1]
@@ -248,7 +250,8 @@ def test_weights_are_read_again_only_when_their_file_has_changed(shipping, weigh
     with monkeypatch.context() as patch:
         patch.setattr(weights_module, "load_weights", None)
         assert (values() == before).all()
-    shutil.copy(weights["pair"], shipping / "csam.safetensors")
+    other = train(small(folds_folder, epochs=1, seed=1), tmp_path / "other", "cpu", progress=False)
+    shutil.copy(other, shipping / "csam.safetensors")
     assert (values() != before).any()
 
 
@@ -258,7 +261,7 @@ def test_weights_that_come_with_the_package_are_sound_and_small():
         assert file.stat().st_size <= 10_000_000, name
         assert found.data, f"{name} does not say what it was trained from"
         assert name not in POLICIES or found.config["network"]["variant"] == name
-    for name in ("csam+caso", "vertex-learned", "1sam", "2sam", "pair"):
+    for name in ("csam+caso", "pair+caso", "vertex-learned", "1sam", "2sam", "pair"):
         assert plugins.create("policies", name)
 
 

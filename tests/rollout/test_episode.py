@@ -127,7 +127,7 @@ def test_a_failure_in_the_middle_keeps_what_was_done_until_then(square, tmp_path
             self.calls += 1
             if self.calls > 1:
                 raise PlanError("tired; rest and try again")
-            return plugins.create("policies", "caso").act(fold_line, scene, rng)
+            return plugins.create("policies", "affordance-pair").act(fold_line, scene, rng)
 
     polyfold.register("policies", "tired", Tired)
     sentence = "fold the left edge onto the right edge, then fold the bottom edge onto the top edge"

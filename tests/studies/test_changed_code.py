@@ -18,17 +18,17 @@ from polyfold.logs import read_run
 PROMPTS = Path(__file__).parents[2] / "prompts"
 
 MODULE = '''
-from polyfold_fgpnp.policies.caso import Caso
+from polyfold_fgpnp.policies.geometric import AffordancePair
 from polyfold import hookimpl
 
 
-class Shifted(Caso):
-    """Picks as caso does, version {version}."""
+class Shifted(AffordancePair):
+    """Picks as affordance-pair does, version {version}."""
 
 
 @hookimpl
 def register_policies(register):
-    register("shifted", "my_plugin.policy:Shifted", "as caso")
+    register("shifted", "my_plugin.policy:Shifted", "as affordance-pair")
 
 
 @hookimpl

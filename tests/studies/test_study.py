@@ -34,7 +34,7 @@ def untimed(records):
 
 
 def test_cells_are_every_combination_once_with_seeds_of_their_own():
-    study = polyfold.ablate(polyfold.Study(**SMALL), "policy", ["caso", "farthest"])
+    study = polyfold.ablate(polyfold.Study(**SMALL), "policy", ["affordance-pair", "farthest"])
     found = list(cells(study))
     assert len({cell.key for cell in found}) == len(found) == 4 * 2 * 2
     assert [cell.agent_seed for cell in found] == [cell.agent_seed for cell in cells(study)]
@@ -56,7 +56,9 @@ def test_a_mistyped_override_names_the_path_and_the_nearest_right_one(path, says
 
 
 def test_grid_combines_settings():
-    study = polyfold.grid(polyfold.Study(**SMALL), {"policy": ["caso", "farthest"], "policy.gamma": [0.0, 0.04]})
+    study = polyfold.grid(
+        polyfold.Study(**SMALL), {"policy": ["affordance-pair", "farthest"], "policy.gamma": [0.0, 0.04]}
+    )
     assert len(study.variants) == 4
     assert experiment_of(study, "farthest, 0.0").policy.params == {"gamma": 0.0}
 

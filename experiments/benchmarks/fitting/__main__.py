@@ -39,7 +39,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument(
         "--creases", action="store_true", help="compare fold lines through vertices (t-shirts' sleeves)"
     )
-    parser.add_argument("--policy", default="caso", help="policy that executes the folds (default: caso)")
+    parser.add_argument(
+        "--policy", default="affordance-pair", help="policy that executes the folds (default: affordance-pair)"
+    )
     parser.add_argument("--real", action="store_true", help="fit real outlines; needs --data")
     parser.add_argument("--data", type=Path, help="folder with the outlines, one JSON object a line")
     parser.add_argument("--rows", choices=["even", "odd", "all"], default="odd", help="rows of the real data")

@@ -24,8 +24,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from polyfold_fgpnp.data.dataset import Dataset, load_dataset
-from polyfold_fgpnp.data.interaction import LINES_PER_STAGE, Interaction, execute, situations
-from polyfold_fgpnp.policies.learned import CoupledActionMap, LearnedPolicy
+from polyfold_fgpnp.data.interaction import Interaction
+from polyfold_fgpnp.data.situations import execute, situations, states_per_job
+from polyfold_fgpnp.policies.coupled import Coupled
+from polyfold_fgpnp.policies.learned import LearnedPolicy
 from polyfold_fgpnp.policies.weights import file_hash, weights_file
 
 from experiments.benchmarks.policies.heldout_tables import RECIPE, correlation_table, regret_table
@@ -65,7 +67,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run what is missing and print the tables."""
     parser = argparse.ArgumentParser(prog="python -m experiments.benchmarks.policies.heldout", description=__doc__)
     parser.add_argument("data", type=Path, help="held-out data set")
-    parser.add_argument("policies", nargs="+", metavar="POLICY[=WEIGHTS]", help="such as caso, csam+caso=out/weights…")
+    parser.add_argument(
+        "policies", nargs="+", metavar="POLICY[=WEIGHTS]", help="such as affordance-pair, csam+caso=out/weights…"
+    )
     parser.add_argument("--workers", type=int, default=1, help="processes (default 1)")
     options = parser.parse_args(arguments)
     try:
@@ -77,10 +81,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _compare(data: Dataset, options: argparse.Namespace) -> None:
     if not len(data.of_recipes(RECIPE)):
         raise ConfigError(f"{options.data} has no random first picks; collect some with --mix {RECIPE}=16")
+    if Interaction(**data.description["parameters"]).course != "good-folds":
+        raise ConfigError(
+            f"{options.data} was collected on a random course, where every policy would come to other states"
+        )
     contestants = [Contestant(text) for text in options.policies]
     errors = {one.text: _executed(options.data, data, one, options.workers) for one in contestants}
     policies = {one.text: one.create() for one in contestants}
-    maps = {name: policy for name, policy in policies.items() if isinstance(policy, CoupledActionMap)}
+    maps = {name: policy for name, policy in policies.items() if isinstance(policy, Coupled)}
     print(correlation_table(data, maps).markdown())
     print()
     print(regret_table(data, errors).markdown())
@@ -94,7 +102,7 @@ def _executed(path: Path, data: Dataset, contestant: Contestant, workers: int) -
     kept = JsonLines(path / "policies" / f"{contestant.file}.jsonl")
     found: dict[int, list[float | None]] = {record["job"]: record["error_mm"] for record in kept.read()}
     interaction = Interaction(**data.description["parameters"])
-    each = sum(LINES_PER_STAGE)
+    each = states_per_job(interaction)
     missing = [job for job in range(data.states // each) if job not in found]
     work = partial(_fold_job, interaction, contestant)
     for job, (errors, ways) in tqdm(in_processes(work, missing, workers), total=len(missing), desc=contestant.text):

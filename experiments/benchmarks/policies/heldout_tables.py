@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from polyfold_fgpnp.data.dataset import Dataset
 from polyfold_fgpnp.policies.actions import PickConfig
 from polyfold_fgpnp.policies.affordance import affordance
-from polyfold_fgpnp.policies.learned import CoupledActionMap
+from polyfold_fgpnp.policies.coupled import Coupled
 from polyfold_fgpnp.policies.region import FoldRegion, fold_region
 from polyfold_fgpnp.training.ranks import rank_correlation
 
@@ -58,7 +58,7 @@ def tried(data: Dataset) -> Iterator[NDArray[np.int64]]:
         yield trials[data["trial_state"][trials] == state]
 
 
-def correlation_table(data: Dataset, maps: Mapping[str, CoupledActionMap]) -> Table:
+def correlation_table(data: Dataset, maps: Mapping[str, Coupled]) -> Table:
     """How well predictions order the picks of a state; see the module's docstring.
 
     Args:
@@ -107,7 +107,7 @@ def _affordance(line: FoldLine, scene: Scene, region: FoldRegion, first: Floats,
     return affordance(region, first, second, PickConfig().gamma)
 
 
-def _read(policy: CoupledActionMap) -> Predictor:
+def _read(policy: Coupled) -> Predictor:
     def predictor(line: FoldLine, scene: Scene, region: FoldRegion, first: Floats, second: Floats) -> Floats:
         points, values = policy.action_map(line, scene)
         return values[np.argmin(((points - first[:, None]) ** 2).sum(-1), axis=1)]

@@ -40,6 +40,12 @@ class Collect:
         parser.add_argument(
             "--edge-length", type="metres", default=0.018, metavar="M", help="of the mesh (default: 0.018)"
         )
+        parser.add_argument(
+            "--course",
+            choices=("good-folds", "random"),
+            default="good-folds",
+            help="many picks from states after good folds, or one from whatever came of the last, as in the paper",
+        )
         parser.add_argument("--mix", metavar="RECIPE=COUNT,...", help="picks tried from every state, by recipe")
         parser.add_argument("--weights", type=Path, metavar="FILE", help="or name: the network that chosen asks")
         parser.add_argument("--seed", type="seed", default=0, help="of everything random (default: 0)")
@@ -88,12 +94,12 @@ def collect(
     from polyfold.logs import exclusive
     from polyfold.studies import in_processes
     from polyfold_fgpnp.data.dataset import DatasetFolder
-    from polyfold_fgpnp.data.interaction import check, explore, trials_per_job
+    from polyfold_fgpnp.data.exploring import check, explore, trials_per_job
 
     if folds < 1 or workers < 1:
         raise ConfigError(f"{folds} folds by {workers} processes can't be collected; give 1 or more of each")
     check(interaction)
-    each = trials_per_job(interaction.mix)
+    each = trials_per_job(interaction)
     total = -(-folds // each)
     with exclusive(out):
         folder = DatasetFolder(out, interaction.model_dump(mode="json"))
@@ -111,7 +117,7 @@ def _interaction(arguments: argparse.Namespace) -> Interaction:
     from pydantic import ValidationError
 
     from polyfold_fgpnp.data.interaction import Interaction
-    from polyfold_fgpnp.data.trials import MIX, parse_mix
+    from polyfold_fgpnp.data.trials import parse_mix
 
     try:
         return Interaction(
@@ -121,7 +127,8 @@ def _interaction(arguments: argparse.Namespace) -> Interaction:
             segmenter=arguments.segmenter,
             seeds=_seeds(arguments.seeds),
             edge_length=arguments.edge_length,
-            mix=parse_mix(arguments.mix) if arguments.mix else dict(MIX),
+            course=arguments.course,
+            mix=parse_mix(arguments.mix) if arguments.mix else None,
             seed=arguments.seed,
             weights=arguments.weights,
         )

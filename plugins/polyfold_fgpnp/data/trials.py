@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from polyfold.errors import ConfigError
 from polyfold_fgpnp.policies.actions import PickConfig
-from polyfold_fgpnp.policies.affordance import best_pair, coupled_pick, slide
+from polyfold_fgpnp.policies.affordance import PARTNER_SLIDE, best_pair, coupled_pick, slide
 from polyfold_fgpnp.policies.lines import outline_corners
 from polyfold_fgpnp.policies.region import FoldRegion, nearest_point
 
@@ -46,52 +46,59 @@ class Flap:
     Attributes:
         region: the flap.
         value_map: a trained network's opinion of it, which only the recipe ``chosen`` asks for.
+        slide: how far partners by affordance move towards the first pick, as a share of their distance.
     """
 
     region: FoldRegion
     value_map: ValueMap | None = None
+    slide: float = PARTNER_SLIDE
+
+    def partner(self, first: Floats) -> Floats:
+        """The best second pick of a first one [px], each of shape (2,)."""
+        return coupled_pick(self.region, first, PickConfig(), self.slide)
 
 
-def _uniform(region: FoldRegion, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    first = region.points[int(place * len(region.points))]
-    return first, coupled_pick(region, first, PickConfig())
+def _uniform(flap: Flap, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    first = flap.region.points[int(place * len(flap.region.points))]
+    return first, flap.partner(first)
 
 
-def _extreme(region: FoldRegion, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    corner = _corner(region, rng)
-    partner = coupled_pick(region, corner, PickConfig())
-    first = slide(region, corner, partner, rng.uniform(0, LARGEST_SLIDE))
-    return first, coupled_pick(region, first, PickConfig())
+def _extreme(flap: Flap, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    corner = _corner(flap.region, rng)
+    first = slide(flap.region, corner, flap.partner(corner), rng.uniform(0, LARGEST_SLIDE))
+    return first, flap.partner(first)
 
 
-def _slid(region: FoldRegion, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+def _slid(flap: Flap, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    region = flap.region
     first, second = best_pair(region, PickConfig().gamma)
     shares = rng.uniform(0, LARGEST_SLIDE, 2)
     return slide(region, first, second, shares[0]), slide(region, second, first, shares[1])
 
 
-def _pair(region: FoldRegion, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+def _pair(flap: Flap, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    region = flap.region
     return region.points[int(place * len(region.points))], region.points[rng.integers(len(region.points))]
 
 
-def _vertex(region: FoldRegion, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    first = nearest_point(region.points, _corner(region, rng))
-    return first, coupled_pick(region, first, PickConfig())
+def _vertex(flap: Flap, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    first = nearest_point(flap.region.points, _corner(flap.region, rng))
+    return first, flap.partner(first)
 
 
-def _single(region: FoldRegion, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    pick = region.points[int(place * len(region.points))]
+def _single(flap: Flap, place: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    pick = flap.region.points[int(place * len(flap.region.points))]
     return pick, pick
 
 
 def _along(
-    draw: Callable[[FoldRegion, float, np.random.Generator], tuple[Floats, Floats]],
+    draw: Callable[[Flap, float, np.random.Generator], tuple[Floats, Floats]],
 ) -> Callable[[Flap, int, np.random.Generator], Pairs]:
     """A recipe that draws pair by pair, from places spread evenly along the contour from a random start, in 0..1."""
 
     def drawn(flap: Flap, count: int, rng: np.random.Generator) -> Pairs:
         places = (np.arange(count) + rng.uniform()) / max(count, 1)
-        return [draw(flap.region, float(place), rng) for place in places]
+        return [draw(flap, float(place), rng) for place in places]
 
     return drawn
 
@@ -101,7 +108,7 @@ def _chosen(flap: Flap, count: int, rng: np.random.Generator) -> Pairs:
         raise ConfigError("the recipe chosen asks a trained network where to pick; give its file with --weights")
     points, values = flap.value_map()
     firsts = points[_valued_most(points, values, count, CHOSEN_APART * len(flap.region.points), rng)]
-    return [(first, coupled_pick(flap.region, first, PickConfig())) for first in firsts]
+    return [(first, flap.partner(first)) for first in firsts]
 
 
 def _valued_most(points: Floats, values: Floats, count: int, apart: float, rng: np.random.Generator) -> list[int]:

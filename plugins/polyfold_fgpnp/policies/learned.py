@@ -1,4 +1,4 @@
-"""Policies that choose picks by a learned value: the coupled spatial action map and its ablations (paper, Table IV)."""
+"""Policies that choose picks by a learned value, and those of them whose picks don't know of each other."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ from pydantic import Field
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, Scene
 from polyfold_fgpnp.policies.actions import PickConfig, to_action
-from polyfold_fgpnp.policies.affordance import PARTNER_SLIDE, affordance, best_pair, coupled_pick
 from polyfold_fgpnp.policies.frames import Frame, view
 from polyfold_fgpnp.policies.pairs import pair_geometry
-from polyfold_fgpnp.policies.region import FoldRegion, fold_region, lifted_vertices, nearest_point
+from polyfold_fgpnp.policies.region import FoldRegion, fold_region
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -27,11 +26,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-CANDIDATES = 72
-"""Contour points that a network which values pairs compares."""
 
-
-def _network(name: str, variants: tuple[str, ...]) -> ValueNetwork:
+def network_of(name: str, variants: tuple[str, ...]) -> ValueNetwork:
     """A network by the name or file of its weights, read and checked once until the file changes."""
     from polyfold_fgpnp.policies.weights import weights_file
 
@@ -56,15 +52,6 @@ class LearnedConfig(PickConfig):
     weights: str = Field(description=WEIGHTS)
 
 
-class PriorConfig(LearnedConfig):
-    """Parameters of policies that add affordance to a learned value."""
-
-    weights: str = Field(default="pair", description=WEIGHTS)
-    prior: float = Field(
-        default=2.0, ge=0, description="what the best affordance adds, in standard deviations of labels"
-    )
-
-
 class LearnedPolicy(ABC):
     """Asks a value network and picks where it promises most."""
 
@@ -76,7 +63,7 @@ class LearnedPolicy(ABC):
     def __init__(self, config: LearnedConfig | None = None) -> None:
         # Every policy's own Config has a default for the weights.
         self.config = config or self.Config()  # pyright: ignore[reportCallIssue]
-        self._network = _network(self.config.weights, (self.variant, *self.also))
+        self._network = network_of(self.config.weights, (self.variant, *self.also))
 
     @classmethod
     def files_read(cls, config: LearnedConfig) -> list[Path]:
@@ -142,80 +129,6 @@ class LearnedPolicy(ABC):
             return _array(both[..., 0].mean(0))
 
 
-class _WithPrior(LearnedPolicy):
-    """Adds affordance to the value of two picks."""
-
-    config: PriorConfig
-
-    def _prior(self, region: FoldRegion, first: Floats, second: Floats) -> Floats:
-        """What affordance adds to the value of pairs of points [px], each of shape (K, 2): shape (K,)."""
-        scores = affordance(region, first, second, self.config.gamma)
-        return self.config.prior * scores / affordance(region, *best_pair(region, self.config.gamma), self.config.gamma)
-
-
-class CoupledActionMap(_WithPrior):
-    """The contour point with the highest value in the coupled spatial action map; its partner by affordance.
-
-    The partner moves a little towards the first pick, as in training (see :func:`coupled_pick`). With a network that
-    values pairs, a point's value is that of itself and its partner. To the value comes the pair's affordance, as a
-    share of the best one, times ``prior``; the paper has 0. It steadies the choice on flaps unlike any in training, and
-    lowers the flap's error on t-shirts held out from training too (13.8 to 13.5 mm, n = 120).
-    """
-
-    variant: ClassVar[str] = "csam"
-    also: ClassVar[tuple[str, ...]] = ("pair",)
-
-    class Config(PriorConfig):
-        """Parameters."""
-
-        slide: float = Field(
-            default=PARTNER_SLIDE, ge=0, lt=0.5, description="share of their distance that the partner moves"
-        )
-
-    def __init__(self, config: Config | None = None) -> None:
-        config = config or self.Config()
-        super().__init__(config)
-        self._slide = config.slide
-
-    def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
-        """The lifted contour [px], shape (N, 2), and the value of picking there, shape (N,); higher is better."""
-        points, _, values = self._coupled(fold_region(fold_line, scene), scene)
-        return points, values
-
-    def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
-        points, partners, values = self._coupled(region, scene)
-        best = int(np.argmax(values))
-        return points[best], partners[best]
-
-    def _coupled(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats, Floats]:
-        """Points and their partners [px], shape (N, 2) each, and values, shape (N,)."""
-        points = self._candidates(region, scene)
-        partners = coupled_pick(region, points, self.config, self._slide)
-        if self._network.config.variant == "pair":
-            values = self._pair_values(region, scene, points, partners)
-        else:
-            values = self._values(region, scene, points)[0]
-        return points, partners, values + self._prior(region, points, partners)
-
-    def _candidates(self, region: FoldRegion, scene: Scene) -> Floats:
-        """Points that may be picked first [px], shape (N, 2)."""
-        return _thinned(region.points)
-
-
-class VertexLearned(CoupledActionMap):
-    """As the coupled spatial action map, but only visible vertices of the polygon model are picked first.
-
-    So what the dense map adds can be told from what the network adds. A network trained on picks at vertices alone,
-    as the paper's, will do too.
-    """
-
-    variant: ClassVar[str] = "vertex-learned"
-    also: ClassVar[tuple[str, ...]] = ("csam", "pair")
-
-    def _candidates(self, region: FoldRegion, scene: Scene) -> Floats:
-        return np.array([nearest_point(region.points, vertex) for vertex in lifted_vertices(region, scene)])
-
-
 class OneActionMap(LearnedPolicy):
     """One arm, at the contour point with the highest value."""
 
@@ -244,42 +157,6 @@ class TwoActionMaps(LearnedPolicy):
     def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
         first, second = np.argmax(self._values(region, scene, region.points), axis=1)
         return region.points[first], region.points[second]
-
-
-class PairValue(_WithPrior):
-    """Both picks at once: the pair of contour points with the highest joint value, the same twice for one arm.
-
-    Not in the paper, whose map knows the second pick only through affordance. As in :class:`CoupledActionMap` the
-    pair's affordance is added to its value.
-    """
-
-    variant: ClassVar[str] = "pair"
-    Config = PriorConfig
-
-    def _choose(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
-        points, values = self._all_pairs(region, scene)
-        first, second = np.unravel_index(int(np.argmax(values)), values.shape)
-        return points[first], points[second]
-
-    def action_map(self, fold_line: FoldLine, scene: Scene) -> tuple[Floats, Floats]:
-        """The lifted contour [px], shape (N, 2), and the value of picking there with the best partner, shape (N,)."""
-        points, values = self._all_pairs(fold_region(fold_line, scene), scene)
-        return points, values.max(axis=1)
-
-    def _all_pairs(self, region: FoldRegion, scene: Scene) -> tuple[Floats, Floats]:
-        """N points of the contour, shape (N, 2), and the value of every pair of them, symmetric, shape (N, N)."""
-        points = _thinned(region.points)
-        first, second = np.triu_indices(len(points))
-        found = self._pair_values(region, scene, points[first], points[second])
-        found += self._prior(region, points[first], points[second])
-        values = np.empty((len(points), len(points)))
-        values[first, second] = values[second, first] = found
-        return points, values
-
-
-def _thinned(points: Floats) -> Floats:
-    """At most :data:`CANDIDATES` of the points, evenly spread."""
-    return points[np.linspace(0, len(points) - 1, min(len(points), CANDIDATES)).astype(int)]
 
 
 def _points(frame: Frame, points: Floats) -> Tensor:

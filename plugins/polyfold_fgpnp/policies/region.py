@@ -161,5 +161,7 @@ def lifted_vertices(region: FoldRegion, scene: Scene) -> Floats:
         if np.hypot(*(nearest_point(region.points, point) - point)) <= NEAR_CONTOUR_PX
     ]
     if not lifted:
-        raise PlanError("no visible polygon vertex lies on the contour left of the fold line; use the policy caso")
+        raise PlanError(
+            "no visible polygon vertex lies on the contour left of the fold line; use the policy affordance-pair"
+        )
     return np.array(lifted)

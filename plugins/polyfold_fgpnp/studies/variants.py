@@ -11,7 +11,7 @@ from polyfold.evaluation import suite
 from polyfold.tasks import Task
 from polyfold_fgpnp.training.runs import TrainingRun
 
-BASELINE = "caso"
+BASELINE = "affordance-pair"
 """The policy without learning that every curve is drawn beside."""
 
 POLICY_OF = {"csam": "csam+caso"}
@@ -32,7 +32,7 @@ class Learned(NamedTuple):
 
 
 def learned(variant: str) -> Learned | None:
-    """Read the name of a variant; None for one that was not learned, such as ``caso``."""
+    """Read the name of a variant; None for one that was not learned, such as ``affordance-pair``."""
     found = re.fullmatch(r"folds=(\d+),seed=(\d+),epoch=(\d+)", variant)
     return Learned(*map(int, found.groups())) if found else None
 
@@ -67,7 +67,7 @@ def study_of(
     first_seed: int = 0,
     last: bool = False,
 ) -> dict[str, Any]:
-    """A study of trainings, plain data for TOML: the true fold lines, one variant for each file of weights, and caso.
+    """A study of trainings, plain data for TOML: the true fold lines, one variant for each file of weights, and none.
 
     As in ``experiments/policies.toml`` an episode's agent is the oracle that knows the fold lines and sees with the
     camera, and results are compared with the ideal fold, so that nothing but the policy differs.

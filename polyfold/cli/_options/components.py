@@ -1,4 +1,4 @@
-"""Options that choose components, shared by the verbs: ``--policy caso``, ``--llm NAME:MODEL``, ``--set``."""
+"""Options that choose components, shared by the verbs: ``--policy farthest``, ``--llm NAME:MODEL``, ``--set``."""
 
 from __future__ import annotations
 

@@ -18,10 +18,10 @@ ASKED = []
 
 
 class Plain:
-    """Folds as ``caso`` does."""
+    """Folds as ``affordance-pair`` does."""
 
     def act(self, fold_line, scene, rng):
-        return plugins.create("policies", "caso").act(fold_line, scene, rng)
+        return plugins.create("policies", "affordance-pair").act(fold_line, scene, rng)
 
 
 class Valued(Plain):

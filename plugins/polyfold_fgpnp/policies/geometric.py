@@ -1,4 +1,4 @@
-"""Policies without learning: picks chosen by affordance alone, from a random vertex, or from the farthest point."""
+"""Policies without learning: the best pair by affordance, or a random or the farthest point with its best partner."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from polyfold_fgpnp.policies.affordance import best_pair, second_pick, slide
 from polyfold_fgpnp.policies.region import FoldRegion, fold_region, lifted_vertices, nearest_point
 
 
-class Caso:
-    """The pair of contour pixels with the best affordance score (conditional affordance score optimisation).
+class AffordancePair:
+    """The pair of contour pixels with the best affordance score: what the paper optimises for one pick, for both.
 
     Each of two picks then slides along the contour towards the other by a tenth of their distance. That is not in the
     paper (0 turns it off). Over the 70 tasks, their true fold lines and three garments of each kind it lowers the mean
@@ -37,6 +37,26 @@ class Caso:
         share = self.config.slide
         picks = slide(region, first, second, share), slide(region, second, first, share)
         return to_action(region, *picks, self.config)
+
+
+class Caso:
+    """A random contour pixel left of the line, and its partner by conditional affordance score optimisation.
+
+    The paper's own action as far as nothing is learned (Sec. IV-D 1): it collects its data so, and its map replaces the
+    random first pick.
+    """
+
+    class Config(PickConfig):
+        """Parameters."""
+
+    def __init__(self, config: Config | None = None) -> None:
+        self.config = config or self.Config()
+
+    def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
+        """Pick a pixel drawn from ``rng`` and its best partner."""
+        region = fold_region(fold_line, scene)
+        first = region.points[rng.integers(len(region.points))]
+        return to_action(region, first, second_pick(region, first, self.config.gamma), self.config)
 
 
 class VertexRandom:
