@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from polyfold_offline.reading.reader import Reader
 
 
-MODEL = "offline-3"
+MODEL = "offline-4"
 
 
 class OfflineLLM:

@@ -11,9 +11,9 @@ from polyfold.errors import ConfigError
 FOLDER = Path(__file__).parent
 
 SHA256 = {
-    "reader.safetensors": "68b3df10328135d3d49f5e57528d3382c49979438c184909a41c4128bfadd4a6",
+    "reader.safetensors": "3b5ea883f8647532a2fc09b585b2b11929c89991632125db77705f2a8cb31579",
     "pieces.json": "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037",
-    "words.json": "2a438209fb79c616a71998994530a597e8015be85df34ba2b397772b231a0116",
+    "words.json": "4be8425b8a69a7e39f40dcd57af38ded4d28adcf49bf3d859d1dadf64f557e82",
 }
 
 SURE = 0.85
