@@ -116,7 +116,7 @@ def collect(
 def _interaction(arguments: argparse.Namespace) -> Interaction:
     from pydantic import ValidationError
 
-    from polyfold_fgpnp.data.interaction import Interaction
+    from polyfold_fgpnp.data.interaction import Interaction, usual_mix
     from polyfold_fgpnp.data.trials import parse_mix
 
     try:
@@ -128,7 +128,7 @@ def _interaction(arguments: argparse.Namespace) -> Interaction:
             seeds=_seeds(arguments.seeds),
             edge_length=arguments.edge_length,
             course=arguments.course,
-            mix=parse_mix(arguments.mix) if arguments.mix else None,
+            mix=parse_mix(arguments.mix) if arguments.mix else usual_mix(arguments.course),
             seed=arguments.seed,
             weights=arguments.weights,
         )

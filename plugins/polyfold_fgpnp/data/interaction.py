@@ -21,6 +21,11 @@ FOLDS_IN_A_ROW = 3
 """Random folds, one upon the other, before a garment is laid out flat again: the tasks of the paper have up to four."""
 
 
+def usual_mix(course: Course | None) -> dict[str, int]:
+    """Trials of each recipe from a state of a course."""
+    return {"uniform": 1} if course == "random" else dict(MIX)
+
+
 class Interaction(BaseModel):
     """Parameters of interaction; the same ones and the same job give the same data.
 
@@ -55,7 +60,7 @@ class Interaction(BaseModel):
     def _with_mix(cls, given: Any) -> Any:
         if not isinstance(given, Mapping) or given.get("mix") is not None:
             return given
-        return {**given, "mix": {"uniform": 1} if given.get("course") == "random" else dict(MIX)}
+        return {**given, "mix": usual_mix(given.get("course"))}
 
     @model_validator(mode="before")
     @classmethod
