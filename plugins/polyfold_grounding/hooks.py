@@ -12,6 +12,7 @@ def register_groundings(register):
         "polyfold_grounding.keypoints:KeypointsGrounding",
         "named keypoints while flat, nameless corners of the contour once folded",
     )
+    register("misfit", "polyfold_grounding.misfit:Misfit", "another grounding with a polygon that fits badly")
     register("image", "polyfold_grounding.picture:ImageGrounding", "the picture alone; needs a vision model")
     register(
         "keypoints+image",

@@ -30,8 +30,11 @@ def register_simulators(register):
 
 @hookimpl
 def register_segmenters(register):
-    """Register the segmenter."""
+    """Register the segmenter and the one that spoils masks."""
     register("colour", "polyfold_standard.segmenter:ColourThreshold", "colour distance from the table")
+    register(
+        "noisy", "polyfold_standard.noise:NoisySegmenter", "another segmenter whose edge wavers, tears or is coarse"
+    )
 
 
 @hookimpl
