@@ -134,6 +134,26 @@ def test_readings_that_allow_one_fold_are_weighed_together():
     assert sum(ways.values()) > 1.0, "both ways to halve the height are likely"
 
 
+@pytest.mark.parametrize(
+    ("kind", "nouns"),
+    [
+        ("square", ("square", "cloth", "napkin")), ("rectangle", ("rectangle", "towel")),
+        ("tshirt", ("t-shirt", "shirt")), ("pants", ("pants", "trousers")),
+    ],
+)  # fmt: skip
+def test_the_shortest_order_of_all_is_carried_out(kind, nouns):
+    from polyfold_offline.cloth.garment import Garment
+    from polyfold_offline.reading.reader import Reader
+    from polyfold_offline.weights import SURE
+
+    reader = Reader(FOLDER, SURE)
+    for noun in (*nouns, "it"):
+        for text in (f"fold the {noun} in half", f"Please fold the {noun} in half."):
+            reading = reader.readings(text.replace("the it", "it"), Garment(kind, kind))[0]
+            assert reading.limit >= SURE, text
+            assert str(reading.program[0]).split()[:2] == ["half", "any"], "and in its own way, not any that it allows"
+
+
 def test_lengths_reach_the_fold_line(planner, llm):
     laid = laid_garment("square", 2001)
     (line,) = plan_ideally("turn up a strip of 5 cm along the bottom edge", laid, planner, llm)

@@ -151,22 +151,30 @@ def _together(candidates: Sequence[Candidate], read: Read, garment: Garment) -> 
     So the ways that readings leave open are weighed together: where both *either half* and *the top half* are
     likely, the top half is likelier right than the bottom one.
     """
-    folded: dict[tuple[Fold, ...], tuple[Program, Folding]] = {}
+    folded: dict[tuple[Fold, ...], tuple[Candidate, Folding]] = {}
     refused: list[tuple[Candidate, str]] = []
     for candidate in candidates:
         try:
             folding = folds_of(candidate.program, read.lengths, garment)
-            folded.setdefault(tuple(folding.folds), (candidate.program, folding))
+            folded.setdefault(tuple(folding.folds), (candidate, folding))
         except NotUnderstoodError as error:
             refused.append((candidate, str(error)))
-    readings = []
+    readings: list[tuple[Reading, float]] = []
     if refused:
         sure = sum(math.exp(candidate.score) for candidate, _ in refused)
-        readings.append(Reading(refused[0][0].program, None, refused[0][1], min(1.0, sure)))
-    for folds, (program, folding) in folded.items():
+        readings.append((Reading(refused[0][0].program, None, refused[0][1], min(1.0, sure)), sure))
+    for folds, (candidate, folding) in folded.items():
         sure = sum(allowance(it.program, read.lengths, garment, folds) * math.exp(it.score) for it in candidates)
-        readings.append(Reading(program, folding, "", min(1.0, sure)))
-    return sorted(readings, key=lambda reading: -reading.sure)
+        readings.append((Reading(candidate.program, folding, "", min(1.0, sure)), math.exp(candidate.score)))
+    readings.sort(key=lambda found: -found[0].sure)
+    # Whatever *either half* allows is a little surer than that itself, by the little that speaks for it alone.
+    as_sure = [found for found in readings if found[0].sure > readings[0][0].sure - _AS_SURE]
+    first = max(as_sure, key=lambda found: found[1])
+    return [first[0], *(found[0] for found in readings if found is not first)]
+
+
+_AS_SURE = 0.05
+"""Readings whose sureness differs by less are as sure as each other: the likelier one by itself is taken."""
 
 
 def _in_known_words(sentence: str, garment: Garment) -> str:
