@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
-from scipy import ndimage
 
 from polyfold.errors import GroundingError
 from polyfold.plugins import create
@@ -59,6 +58,8 @@ class NoisySegmenter:
 
 def _wavering(mask: Mask, edge: float, length: float, rng: np.random.Generator) -> Mask:
     """The mask within an outline moved by a smooth random field."""
+    from scipy import ndimage
+
     inside, outside = (np.asarray(ndimage.distance_transform_edt(part)) for part in (mask, ~mask))
     depth = np.where(mask, inside - 0.5, 0.5 - outside)
     field = ndimage.gaussian_filter(rng.standard_normal(mask.shape), length / 2)
@@ -67,6 +68,8 @@ def _wavering(mask: Mask, edge: float, length: float, rng: np.random.Generator) 
 
 def _torn(mask: Mask, count: int, radius: float, rng: np.random.Generator) -> Mask:
     """The mask without disks around random points of its edge."""
+    from scipy import ndimage
+
     edge = np.argwhere(mask & ~np.asarray(ndimage.binary_erosion(mask), bool))
     rows, columns = np.indices(mask.shape)
     found = mask.copy()
