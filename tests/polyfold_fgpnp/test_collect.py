@@ -10,6 +10,7 @@ from few_folds import FOLDS, MIX, interaction
 from polyfold_fgpnp.data.collect import collect
 from polyfold_fgpnp.data.dataset import DatasetFolder, load_dataset
 from polyfold_fgpnp.data.exploring import explore
+from polyfold_fgpnp.data.interaction import Interaction
 from polyfold_fgpnp.data.situations import execute, situations
 from polyfold_fgpnp.data.trials import RECIPES, Flap, draw_trials, parse_mix
 from polyfold_fgpnp.policies.actions import PickConfig
@@ -51,13 +52,13 @@ def test_picks_lie_on_the_lifted_contour(folds):
 
 
 def test_a_random_course_goes_on_from_what_came_of_the_last_pick(tmp_path):
-    collect(interaction(course="random", seeds=(2000, 2000), mix=None), 1, tmp_path, progress=False)
+    collect(Interaction(course="random", seeds=(2000, 2000), edge_length=0.035), 1, tmp_path, progress=False)
     data = load_dataset(tmp_path)
     assert data.states == data.folds == 12
     assert (data["line_kind"] == LINE_KINDS.index("chord")).all(), "between two random points of the contour"
     before = data["folds_before"]
     assert before[0] == 0
-    assert before.max() == 2
+    assert before.max() == 3
     for state in np.flatnonzero(before):
         assert before[state] == before[state - 1] + 1
         assert (data.mask(state) == data.result(state - 1)).all()

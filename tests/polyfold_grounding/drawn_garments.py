@@ -3,8 +3,9 @@
 import numpy as np
 
 from polyfold import plugins
-from polyfold.geometry import rotate
+from polyfold.geometry import Camera, rotate
 from polyfold.geometry._masks import fill_polygon
+from polyfold.types import Observation
 
 SIZE = 400
 
@@ -27,3 +28,9 @@ def mask_of(model):
     for facet in model.facets():
         mask |= fill_polygon(facet.polygon, SIZE, SIZE)
     return mask
+
+
+def seen(mask):
+    """A picture of cloth that covers a mask."""
+    rgb = np.where(mask[..., None], [200, 30, 60], [90, 90, 90]).astype(np.uint8)
+    return Observation(rgb, np.ones(mask.shape, np.float32), Camera())

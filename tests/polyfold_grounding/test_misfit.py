@@ -2,18 +2,15 @@
 
 import numpy as np
 import pytest
-from drawn_garments import SIZE, flat_garment, mask_of
+from drawn_garments import SIZE, flat_garment, mask_of, seen
 
 from polyfold import plugins
-from polyfold.geometry import Camera, FoldLine
-from polyfold.types import Observation
+from polyfold.geometry import FoldLine
 
 
 def ground(name, mask, previous=None, line=None, **config):
-    rgb = np.where(mask[..., None], [200, 30, 60], [90, 90, 90]).astype(np.uint8)
-    picture = Observation(rgb, np.ones(mask.shape, np.float32), Camera())
     template = plugins.create("garments", "tshirt").template()
-    return plugins.create("groundings", name, config).ground(picture, mask, template, previous, line)
+    return plugins.create("groundings", name, config).ground(seen(mask), mask, template, previous, line)
 
 
 @pytest.fixture(scope="module")

@@ -4,22 +4,16 @@ import json
 
 import numpy as np
 import pytest
-from drawn_garments import flat_garment, mask_of
+from drawn_garments import flat_garment, mask_of, seen
 
 from polyfold import plugins
-from polyfold.geometry import Camera, FoldLine
-from polyfold.types import Observation
+from polyfold.geometry import FoldLine
 
 ANGLE = 0.2
 
 
 def template_of(kind):
     return plugins.create("garments", kind).template()
-
-
-def seen(mask):
-    rgb = np.where(mask[..., None], [200, 30, 60], [90, 90, 90]).astype(np.uint8)
-    return Observation(rgb, np.ones(mask.shape, np.float32), Camera())
 
 
 def ground(name, mask, kind, previous=None, line=None, **config):

@@ -17,8 +17,8 @@ from polyfold_fgpnp.policies.weights import file_hash, weights_file
 
 Course = Literal["good-folds", "random"]
 
-FOLDS_IN_A_ROW = 3
-"""Random folds, one upon the other, before a garment is laid out flat again: the tasks of the paper have up to four."""
+FOLDS_IN_A_ROW = 4
+"""Random folds, one upon the other, before a garment is laid out flat again: as the longest task has."""
 
 
 def usual_mix(course: Course | None) -> dict[str, int]:
@@ -47,20 +47,16 @@ class Interaction(BaseModel):
     seeds: tuple[int, int] = Field(default=(1000, 1099), description="first and last garment seed")
     edge_length: float = Field(default=0.018, gt=0.005, le=0.05, description="edge length of the mesh [m]")
     course: Course = Field(default="good-folds", description="how states come about")
-    mix: Mapping[str, int] = Field(description="trials of each recipe from a state; by default what suits the course")
+    mix: Mapping[str, int] = Field(
+        default_factory=lambda given: usual_mix(given.get("course")),
+        description="trials of each recipe from a state; by default what suits the course",
+    )
     simulator: ComponentSpec = Field(default=ComponentSpec(name="xpbd"), description="what folds, with its parameters")
     fabric: ComponentSpec = Field(default=Experiment().fabric, description="what the garments are made of")
     segmenter: ComponentSpec = Field(default=ComponentSpec(name="colour"), description="what tells cloth from table")
     seed: int = Field(default=0, ge=0, description="of everything random")
     weights: Path | None = Field(default=None, exclude=True, description="file of the network that chosen picks ask")
     weights_hash: str | None = Field(default=None, description="SHA-256 of that file")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _with_mix(cls, given: Any) -> Any:
-        if not isinstance(given, Mapping) or given.get("mix") is not None:
-            return given
-        return {**given, "mix": usual_mix(given.get("course"))}
 
     @model_validator(mode="before")
     @classmethod

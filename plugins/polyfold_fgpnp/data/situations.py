@@ -31,7 +31,7 @@ GOOD_FOLD = 0.75
 ATTEMPTS = 4
 """Lines tried for one good fold; without one the garment stays as it is."""
 
-ROWS_PER_JOB = 4
+ROWS_PER_JOB = 3
 """How often a garment is laid out flat in one job of the random course."""
 
 
