@@ -154,6 +154,44 @@ def test_the_shortest_order_of_all_is_carried_out(kind, nouns):
             assert str(reading.program[0]).split()[:2] == ["half", "any"], "and in its own way, not any that it allows"
 
 
+@pytest.mark.parametrize(
+    ("said", "meant"),
+    [
+        ("Fold {}.", "goal neat"), ("fold up {}", "goal neat"), ("Could you please fold {} up neatly?", "goal neat"),
+        ("fold {} in half twice", "half any; half any"), ("fold {} into quarters, please", "goal quarter"),
+        ("fold {} in thirds", "goal letter"),
+    ],
+)  # fmt: skip
+def test_an_order_that_only_names_the_garment_is_carried_out_whatever_its_name(said, meant):
+    from polyfold_offline.cloth.garment import Garment
+    from polyfold_offline.meaning.program import parse_program
+    from polyfold_offline.reading.reader import Reader
+    from polyfold_offline.weights import SURE
+
+    reader = Reader(FOLDER, SURE)
+    names = {
+        "square": ("towel", "napkin"),
+        "rectangle": ("tea towel",),
+        "tshirt": ("shirt", "tee"),
+        "pants": ("jeans",),
+    }
+    for kind, nouns in names.items():
+        for name in ("it", "this", *(f"{which} {noun}" for noun in nouns for which in ("the", "my"))):
+            reading = reader.readings(said.format(name), Garment(kind, kind))[0]
+            assert reading.program == parse_program(meant)[0], (kind, name)
+            assert reading.limit >= SURE
+
+
+@pytest.mark.parametrize(
+    "text", ["fold the trousers", "fold up the sleeve", "fold the towel", "fold the shirt in", "fold"]
+)
+def test_another_garment_or_part_is_no_order_for_this_one(text):
+    from polyfold_offline.cloth.garment import Garment
+    from polyfold_offline.reading.orders import program_of_shortest_order
+
+    assert program_of_shortest_order(text, Garment("tshirt", "tshirt")) is None
+
+
 def test_lengths_reach_the_fold_line(planner, llm):
     laid = laid_garment("square", 2001)
     (line,) = plan_ideally("turn up a strip of 5 cm along the bottom edge", laid, planner, llm)

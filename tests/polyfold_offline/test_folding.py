@@ -11,7 +11,7 @@ from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
 from polyfold_offline.meaning.allowing import allowance
 from polyfold_offline.meaning.folding import folds_of
 from polyfold_offline.meaning.program import parse_program
-from polyfold_offline.reading.reader import fold_of_subgoal
+from polyfold_offline.reading.orders import fold_of_subgoal
 from polyfold_offline.training.generator import generate
 from polyfold_planning.answers.grammar import check_subgoal
 

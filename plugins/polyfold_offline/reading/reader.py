@@ -6,25 +6,16 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from pathlib import Path
 
-from polyfold_offline.cloth.folds import (
-    CORNERS,
-    EDGES,
-    OPPOSITE_CORNER,
-    OPPOSITE_EDGE,
-    PART_NAMES,
-    Fold,
-    edge_name,
-    say,
-)
+from polyfold_offline.cloth.folds import Fold, say
 from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
 from polyfold_offline.meaning.allowing import LEFT_OPEN, allowance
 from polyfold_offline.meaning.folding import REASONS, Folding, folds_of
-from polyfold_offline.meaning.program import FRACTIONS, Piece, Program
+from polyfold_offline.meaning.program import Piece, Program
 from polyfold_offline.reading.decoding import Candidate, likeliest
 from polyfold_offline.reading.network import Network
+from polyfold_offline.reading.orders import fold_of_plain_order, fold_of_subgoal, program_of_shortest_order
 from polyfold_offline.reading.pieces import Pieces
 from polyfold_offline.reading.text import Read, take_lengths
 
@@ -93,6 +84,8 @@ class Reader:
         """The ways to understand a sentence, the likeliest first; those with the same folds are one."""
         if _OTHER_WORK.match(sentence):
             return [Reading((Piece("no", "action"),), None, REASONS["action"], 1.0)]
+        if (program := program_of_shortest_order(sentence, garment)) is not None:
+            return [Reading(program, folds_of(program, (), garment), "", 1.0)]
         read = take_lengths(_in_known_words(sentence, garment))
         candidates = likeliest(self._network, self._pieces.read(read.text, garment.family), garment.family)
         return _together(candidates if _SECOND_STATEMENT.search(read.text) else _consistent(candidates), read, garment)
@@ -184,49 +177,3 @@ def _in_known_words(sentence: str, garment: Garment) -> str:
     for part in sorted(garment.parts, key=len, reverse=True):
         sentence = re.sub(rf"\b{re.escape(part)}\b", f"{garment.parts[part]} edge", sentence, flags=re.IGNORECASE)
     return sentence
-
-
-# Subgoals in the form in which this backend says them ----------------------------------------------------------------
-
-
-def fold_of_subgoal(sentence: str, garment: Garment) -> Fold | None:
-    """The fold of a subgoal that is worded as :func:`polyfold_offline.cloth.folds.say` does; None of any other."""
-    words = " ".join(sentence.split()).rstrip(".")
-    if strip := _STRIP.fullmatch(words):
-        return Fold("band", strip["edge"], cm=float(strip["cm"]))
-    return next((fold for fold in _sayable(garment) if say(fold, garment.kind) == words), None)
-
-
-def fold_of_plain_order(sentence: str, garment: Garment) -> Fold | None:
-    """The fold of an order in the fewest words, *fold the left edge onto the right edge*; None of any other.
-
-    The reader learns from no sentence that measures it, and these are just the shortest of them.
-    """
-    order = _PLAIN.fullmatch(" ".join(sentence.split()))
-    for edge in EDGES if order else ():
-        names, others = ({f"{e} edge", f"{e} side", edge_name(garment.kind, e)} for e in (edge, OPPOSITE_EDGE[edge]))
-        if order and order["part"].lower() in names and order["other"].lower() in others:
-            return Fold("half", edge)
-    return None
-
-
-_PLAIN = re.compile(
-    r"(?:please )?(?:fold|bring|put|lay) (?:the )?(?P<part>[a-z ]+?) "
-    r"(?:over |on |across |(?:up|down|left|right)(?:wards?)? )?(?:to|onto|on|over|top of) (?:the )?"
-    r"(?P<other>[a-z ]+?)(?:,? please)?[.!]?",
-    re.IGNORECASE,
-)
-_STRIP = re.compile(r"fold the (?P<edge>left|right|top|bottom) strip of (?P<cm>\d+(?:\.\d+)?) cm \w+ward to the rest")
-
-
-def _sayable(garment: Garment) -> list[Fold]:
-    folds = [Fold("half", edge, manner=manner) for edge in EDGES for manner in ("", "again", "gap")]
-    folds += [Fold("half", edge) for edge in ("long", "short")] + [Fold("middle", edge) for edge in EDGES]
-    shares = [Fraction(share) for share in FRACTIONS if Fraction(share).denominator in PART_NAMES]
-    folds += [Fold("band", edge, share=share) for edge in EDGES for share in shares]
-    if garment.plain:
-        folds += [Fold("corner", corner, "centre") for corner in CORNERS]
-        folds += [Fold("corner", corner, other) for corner, other in OPPOSITE_CORNER.items()]
-    if garment.family == "tshirt":
-        folds += [Fold("sleeve", side, manner=manner) for side in EDGES[:2] for manner in ("straight", "slanted")]
-    return folds

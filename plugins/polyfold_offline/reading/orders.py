@@ -1,0 +1,103 @@
+"""Orders that are read to the letter: subgoals as this backend words them, and the shortest that people give."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+
+from polyfold_offline.cloth.folds import (
+    CORNERS,
+    EDGES,
+    OPPOSITE_CORNER,
+    OPPOSITE_EDGE,
+    PART_NAMES,
+    Fold,
+    edge_name,
+    say,
+)
+from polyfold_offline.cloth.garment import Garment
+from polyfold_offline.meaning.program import FRACTIONS, Piece, Program
+
+
+def fold_of_subgoal(sentence: str, garment: Garment) -> Fold | None:
+    """The fold of a subgoal that is worded as :func:`polyfold_offline.cloth.folds.say` does; None of any other."""
+    words = " ".join(sentence.split()).rstrip(".")
+    if strip := _STRIP.fullmatch(words):
+        return Fold("band", strip["edge"], cm=float(strip["cm"]))
+    return next((fold for fold in _sayable(garment) if say(fold, garment.kind) == words), None)
+
+
+def fold_of_plain_order(sentence: str, garment: Garment) -> Fold | None:
+    """The fold of an order in the fewest words, *fold the left edge onto the right edge*; None of any other.
+
+    The reader learns from no sentence that measures it, and these are just the shortest of them.
+    """
+    order = _PLAIN.fullmatch(" ".join(sentence.split()))
+    for edge in EDGES if order else ():
+        names, others = ({f"{e} edge", f"{e} side", edge_name(garment.kind, e)} for e in (edge, OPPOSITE_EDGE[edge]))
+        if order and order["part"].lower() in names and order["other"].lower() in others:
+            return Fold("half", edge)
+    return None
+
+
+_PLAIN = re.compile(
+    r"(?:please )?(?:fold|bring|put|lay) (?:the )?(?P<part>[a-z ]+?) "
+    r"(?:over |on |across |(?:up|down|left|right)(?:wards?)? )?(?:to|onto|on|over|top of) (?:the )?"
+    r"(?P<other>[a-z ]+?)(?:,? please)?[.!]?",
+    re.IGNORECASE,
+)
+_STRIP = re.compile(r"fold the (?P<edge>left|right|top|bottom) strip of (?P<cm>\d+(?:\.\d+)?) cm \w+ward to the rest")
+
+
+def program_of_shortest_order(sentence: str, garment: Garment) -> Program | None:
+    """The program of an order that only names the garment, *fold the shirt*, *fold it in half twice*; None of others.
+
+    They hold too few words for a network to be sure of any: one name of a garment more or less decides.
+    """
+    order = _SHORTEST.fullmatch(" ".join(sentence.split()))
+    if order is None or order["noun"].lower() not in ("it", "this", "them", *_nouns(garment)):
+        return None
+    return next(program for pattern, program in _RESULTS if pattern.fullmatch(order["result"] or ""))
+
+
+def _nouns(garment: Garment) -> tuple[str, ...]:
+    return _NOUNS.get(garment.family, (garment.spoken, garment.kind.replace("_", " "), garment.kind))
+
+
+_CLOTHS = ("cloth", "towel", "napkin", "handkerchief", "scarf", "flannel")
+_NOUNS = {
+    "square": (*_CLOTHS, "square", "square cloth", "bandana"),
+    "rectangle": (*_CLOTHS, "rectangle", "rectangular cloth", "tea towel", "dish towel", "blanket"),
+    "tshirt": ("t-shirt", "tshirt", "t shirt", "shirt", "tee"),
+    "pants": ("pants", "trousers", "jeans", "pair of pants", "pair of trousers", "pair of jeans"),
+}
+"""What people call the garment on the table: another name means another garment, which the reader refuses."""
+
+_HALVED = Piece("half", "any")
+_RESULTS = (
+    (re.compile(r"(?:up|neatly|nicely|tidily|properly| )*", re.IGNORECASE), (Piece("goal", "neat"),)),
+    (re.compile(r"in half (?:twice|two times)|twice in half", re.IGNORECASE), (_HALVED, _HALVED)),
+    (re.compile(r"in(?:to)? (?:quarters|fourths|four)", re.IGNORECASE), (Piece("goal", "quarter"),)),
+    (re.compile(r"in(?:to)? (?:thirds|three)", re.IGNORECASE), (Piece("goal", "letter"),)),
+)
+"""What an order may say of the result, and what that asks for."""
+
+_SHORTEST = re.compile(
+    r"(?:please,? |(?:can|could|would) you (?:please )?)?fold (?:up )?"
+    r"(?:(?:the|this|that|my|our) )?(?!in)(?P<noun>[a-z -]+?)"
+    rf"(?: (?P<result>{'|'.join(pattern.pattern for pattern, _ in _RESULTS)}))?(?:,? please)?[.!?]?",
+    re.IGNORECASE,
+)
+
+
+def _sayable(garment: Garment) -> list[Fold]:
+    folds = [Fold("half", edge, manner=manner) for edge in EDGES for manner in ("", "again", "gap")]
+    folds += [Fold("half", edge) for edge in ("long", "short")] + [Fold("middle", edge) for edge in EDGES]
+    shares = [Fraction(share) for share in FRACTIONS if Fraction(share).denominator in PART_NAMES]
+    folds += [Fold("band", edge, share=share) for edge in EDGES for share in shares]
+    if garment.plain:
+        folds += [Fold("corner", corner, "centre") for corner in CORNERS]
+        folds += [Fold("corner", corner, other) for corner, other in OPPOSITE_CORNER.items()]
+    if garment.family == "tshirt":
+        folds += [Fold("sleeve", side, manner=manner) for side in EDGES[:2] for manner in ("straight", "slanted")]
+    return folds
