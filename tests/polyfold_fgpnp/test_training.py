@@ -343,13 +343,33 @@ def test_training_from_the_command_line(folds_folder, tmp_path, capsys):
     config = tmp_path / "csam.toml"
     config.write_text(f'data = ["{folds_folder}"]\nepochs = 1\n[network]\nbase = 4\nlevels = 2\n')
     out = tmp_path / "out"
-    assert main(["train", str(config), "--out", str(out), "--device", "cpu", "--seed", "3", "--folds", "49"]) == 0
+    assert (
+        main(
+            [
+                "train",
+                str(config),
+                "--out",
+                str(out),
+                "--device",
+                "cpu",
+                "--seed",
+                "3",
+                "--epochs",
+                "2",
+                "--folds",
+                "49",
+            ]
+        )
+        == 0
+    )
     assert "weights.safetensors" in capsys.readouterr().out
     found = load_weights(out / "weights.safetensors")[1].config
-    assert (found["seed"], found["folds"]) == (3, 49)
+    assert (found["seed"], found["epochs"], found["folds"]) == (3, 2, 49)
     config.write_text('data = ["x"]\nepochs = 20\nsnapshots = [10, 30]\n')
     with pytest.raises(ConfigError, match="snapshots has 30"):
         read_config(config)
+    assert read_config(config, epochs=100).snapshots == (10, 30)
+    assert read_config(config, epochs=15).snapshots == (10,)
     config.write_text('data = ["x"]\nepochs = -1\n')
     with pytest.raises(ConfigError, match="epochs"):
         read_config(config)
@@ -367,6 +387,21 @@ def test_policies_and_verbs_are_listed_without_torch():
 @pytest.mark.parametrize("path", sorted((Path(__file__).parents[2] / "experiments/training").glob("*.toml")))
 def test_the_recorded_configurations_are_valid(path):
     assert read_config(path).data
+
+
+def test_the_rows_of_the_papers_table_are_trained_alike_but_for_what_they_value_and_what_was_tried():
+    folder = Path(__file__).parents[2] / "experiments/training"
+    names = ("csam", "1sam", "2sam", "vertex-learned")
+    configs = {name: read_config(folder / f"{name}.toml") for name in names}
+    assert [config.network.variant for config in configs.values()] == list(names)
+    assert len({config.data for config in configs.values()}) == len(names)
+    own = {"data": ("same",), "snapshots": ()}
+    alike = [
+        config.model_copy(update={**own, "network": config.network.model_copy(update={"variant": "csam"})})
+        for config in configs.values()
+    ]
+    assert all(config == alike[0] for config in alike)
+    assert (alike[0].network.frame, alike[0].reward, alike[0].scale) == ("camera", "contour", "linear")
 
 
 def test_both_rewards_teach_the_mean_of_their_labels(folds_folder):

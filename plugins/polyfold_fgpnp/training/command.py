@@ -16,6 +16,7 @@ class Train:
         parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder; resumed if it exists")
         parser.add_argument("--device", choices=["auto", "cpu", "cuda"], default="auto", help="default: auto")
         parser.add_argument("--data", metavar="DIR", action="append", help="data set instead of the file's; repeatable")
+        parser.add_argument("--epochs", type="count", metavar="N", help="passes over the data, instead of the file's")
         parser.add_argument("--seed", type="seed", metavar="N", help="instead of the file's")
         parser.add_argument(
             "--folds", type="count", metavar="N", help="first folds of each data set, instead of the file's"
@@ -27,7 +28,7 @@ class Train:
         from polyfold_fgpnp.training.config import read_config
         from polyfold_fgpnp.training.training import train
 
-        changes = {name: getattr(arguments, name) for name in ("data", "seed", "folds")}
+        changes = {name: getattr(arguments, name) for name in ("data", "epochs", "seed", "folds")}
         config = read_config(arguments.config, **changes)
         try:
             weights = train(config, arguments.out, arguments.device)

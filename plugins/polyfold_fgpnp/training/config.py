@@ -55,10 +55,14 @@ class TrainingConfig(BaseModel):
 def read_config(path: str | Path, **changes: object) -> TrainingConfig:
     """A training configuration from TOML, with some values replaced where they are not None.
 
+    With other ``epochs`` the snapshots are those of the file that fall within them.
+
     Raises:
         ConfigError: naming the field that is wrong.
     """
     content = {**read_toml(path), **{name: value for name, value in changes.items() if value is not None}}
+    if changes.get("epochs") is not None and isinstance(content.get("snapshots"), list):
+        content["snapshots"] = [epoch for epoch in content["snapshots"] if epoch <= content["epochs"]]
     try:
         return TrainingConfig(**content)
     except ValidationError as error:
