@@ -1,5 +1,6 @@
 """Random interaction: what a data set holds, that killing loses nothing, and that nothing is taken on trust."""
 
+import contextlib
 import json
 import shutil
 
@@ -120,6 +121,44 @@ def test_another_schema_is_refused_and_not_guessed(folds_folder, tmp_path):
     (other / "dataset.json").write_text(json.dumps({**description, "schema_version": 99}))
     with pytest.raises(ConfigError, match="schema version 99"):
         load_dataset(other)
+
+
+@pytest.mark.parametrize("course", ["good-folds", "random"])
+def test_a_data_set_in_one_file_is_the_same_and_smaller(folds_folder, tmp_path, course, capsys):
+    from polyfold_fgpnp.data.dataset import pack_dataset
+
+    folder, file = folds_folder, tmp_path / "published" / "folds.npz"
+    if course == "random":
+        folder = tmp_path / "random"
+        collect(interaction(course=course, mix={"uniform": 1}), 12, folder, progress=False)
+    size = pack_dataset(folder, file)
+    whole, packed = load_dataset(folder), load_dataset(file)
+    assert packed.description == whole.description
+    assert packed.columns.keys() == whole.columns.keys()
+    for name, values in whole.columns.items():
+        np.testing.assert_array_equal(packed[name], values, name)
+        assert packed[name].dtype == values.dtype
+    assert size < 0.7 * sum(shard.stat().st_size for shard in (folder / "shards").glob("*.npz"))
+    pack_dataset(folder, tmp_path / "again.npz")
+    assert (tmp_path / "again.npz").read_bytes() == file.read_bytes()
+    assert main(["collect", "--describe", str(file)]) == 0
+    assert f"{whole.folds} folds from {whole.states} states" in capsys.readouterr().out
+    assert file.with_name("folds-picks.png").exists()
+
+
+def test_a_damaged_file_of_a_data_set_is_refused_whichever_byte_it_is(folds_folder, tmp_path):
+    from polyfold_fgpnp.data.dataset import pack_dataset
+
+    file = tmp_path / "folds.npz"
+    size = pack_dataset(folds_folder, file)
+    whole, rng = file.read_bytes(), np.random.default_rng(0)
+    for at in rng.integers(size, size=40):
+        file.write_bytes(whole[:at] + bytes([whole[at] ^ 0x10]) + whole[at + 1 :])
+        with contextlib.suppress(ConfigError):  # else it is a byte that nothing reads, such as a date
+            np.testing.assert_array_equal(load_dataset(file)["result"], load_dataset(folds_folder)["result"])
+    file.write_bytes(whole[: size // 2])
+    with pytest.raises(ConfigError, match="is no data set"):
+        load_dataset(file)
 
 
 class Diverging:

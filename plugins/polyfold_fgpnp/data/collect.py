@@ -24,6 +24,7 @@ class Collect:
         parser.add_argument(
             "--describe", type=Path, metavar="DIR", help="show what a data set holds instead of collecting"
         )
+        parser.add_argument("--pack", type=Path, metavar="FILE", help="when complete, write it into one small file too")
         parser.add_argument(
             "--folds", type="count", default=10_000, metavar="N", help="at least this many (default: 10000)"
         )
@@ -53,6 +54,7 @@ class Collect:
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Collect, or describe."""
+        from polyfold_fgpnp.data.dataset import pack_dataset
         from polyfold_fgpnp.data.describe import describe
 
         if (arguments.out is None) == (arguments.describe is None):
@@ -69,6 +71,8 @@ class Collect:
         print(
             f"{counts['folds']} folds from {counts['states']} states in {arguments.out}, {counts['diverged']} diverged"
         )
+        if arguments.pack is not None:
+            print(f"packed: {arguments.pack}, {pack_dataset(arguments.out, arguments.pack) / 1e6:.1f} MB")
         return 0
 
 

@@ -36,6 +36,7 @@ from polyfold.errors import ConfigError
 from polyfold.geometry import FoldLine, contour_of
 from polyfold.types import Scene
 from polyfold_fgpnp.data.outcomes import contour_reward, particle_reward
+from polyfold_fgpnp.data.packing import read_packed, write_packed
 from polyfold_fgpnp.data.trials import RECIPES
 
 SCHEMA = 2
@@ -197,13 +198,15 @@ class Dataset:
 
 
 def load_dataset(path: str | Path) -> Dataset:
-    """Read a complete data set.
+    """Read a complete data set, a folder or one file (:mod:`polyfold_fgpnp.data.packing`).
 
     Raises:
-        ConfigError: if there is none, it is unfinished, of an unknown schema, or its shards are not those it was
+        ConfigError: if there is none, it is unfinished, of an unknown schema, or its numbers are not those it was
             finished with.
     """
     path = Path(path)
+    if path.is_file():
+        return Dataset(*read_packed(path))
     description = _read_description(path)
     if not description.get("complete"):
         raise ConfigError(f"the data set in {path} is not complete; run the same `polyfold collect` again to finish it")
@@ -215,6 +218,17 @@ def load_dataset(path: str | Path) -> Dataset:
         offset += len(shard["mask"])
         shards.append(shard)
     return Dataset(description, {name: np.concatenate([shard[name] for shard in shards]) for name in shards[0]})
+
+
+def pack_dataset(path: str | Path, file: str | Path) -> int:
+    """Write a complete data set into one file and return its size in bytes.
+
+    Raises:
+        ConfigError: as :func:`load_dataset`.
+    """
+    data = load_dataset(path)
+    write_packed(file, data.description, data.columns, row=IMAGE[1] // 8)
+    return Path(file).stat().st_size
 
 
 def _read_description(path: Path) -> Description:

@@ -25,9 +25,10 @@ STATES_SHOWN = 12
 
 
 def describe(path: str | Path) -> str:
-    """Counts and distributions as text; writes the sheet ``picks.png`` into the data set's folder."""
+    """Counts and distributions as text; writes the sheet of picks into the data set's folder, or beside its file."""
     data = load_dataset(path)
-    sheet = Path(path) / "picks.png"
+    path = Path(path)
+    sheet = path.with_name(f"{path.stem}-picks.png") if path.is_file() else path / "picks.png"
     pick_sheet(data, sheet)
     return "\n".join([*_counts(data), "", *_rewards(data), "", f"good, median and bad picks: {sheet}"])
 
