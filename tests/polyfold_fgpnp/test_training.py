@@ -389,6 +389,19 @@ def test_the_recorded_configurations_are_valid(path):
     assert read_config(path).data
 
 
+def test_weights_say_what_they_were_trained_from(folds_folder, weights):
+    from experiments.benchmarks.policies.trained import HEADERS, table
+
+    head, _, line = table({"mine": weights["csam"]}).splitlines()
+    said = dict(zip(HEADERS, (cell.strip() for cell in line.strip("| ").split("|")), strict=True))
+    assert head.startswith("| weights | values |")
+    data = load_dataset(folds_folder)
+    assert (said["weights"], said["values"], said["data"]) == ("`mine`", "csam", data.description["hash"][:8])
+    coupled = data.of_recipes("uniform", "extreme", "chosen")
+    assert 0 < int(said["folds"]) < len(coupled), "those of the garment that is held out are not counted"
+    assert len(table(shipped_weights()).splitlines()) == 2 + len(shipped_weights())
+
+
 def test_the_rows_of_the_papers_table_are_trained_alike_but_for_what_they_value_and_what_was_tried():
     folder = Path(__file__).parents[2] / "experiments/training"
     names = ("csam", "1sam", "2sam", "vertex-learned")

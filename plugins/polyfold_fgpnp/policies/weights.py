@@ -28,12 +28,14 @@ class Provenance:
         config: the training configuration, plain data; ``config["network"]`` is the network's.
         data: hashes of the data sets they were trained from.
         mean, deviation: of the labels; the network's values are labels standardised by them.
+        folds: how many of the data's folds taught it, those held out for validation apart; 0 if that was not recorded.
     """
 
     config: Mapping[str, Any]
     data: tuple[str, ...]
     mean: float
     deviation: float
+    folds: int = 0
 
     @property
     def config_hash(self) -> str:
@@ -79,6 +81,7 @@ def save_weights(path: str | Path, network: ValueNetwork, provenance: Provenance
         "config_hash": provenance.config_hash,
         "data": json.dumps(provenance.data),
         "labels": json.dumps([provenance.mean, provenance.deviation]),
+        "folds": str(provenance.folds),
     }
     metadata["hash"] = _hash(tensors, metadata)
     part = Path(path).with_suffix(".part")
@@ -120,11 +123,12 @@ def load_weights(path: str | Path, *variants: str) -> tuple[ValueNetwork, Proven
             f"{path} does not match its own hash: it is damaged or was changed; train or install it again"
         )
     mean, deviation = json.loads(metadata["labels"])
-    found = Provenance(json.loads(metadata["config"]), tuple(json.loads(metadata["data"])), mean, deviation)
-    config = NetworkConfig(**found.config["network"])
-    if variants and config.variant not in variants:
-        raise ConfigError(f"{path} holds weights for {config.variant}, not for {' or '.join(variants)}; give others")
-    network = ValueNetwork(config)
+    config, data = json.loads(metadata["config"]), tuple(json.loads(metadata["data"]))
+    found = Provenance(config, data, mean, deviation, int(metadata.get("folds", 0)))
+    shape = NetworkConfig(**found.config["network"])
+    if variants and shape.variant not in variants:
+        raise ConfigError(f"{path} holds weights for {shape.variant}, not for {' or '.join(variants)}; give others")
+    network = ValueNetwork(shape)
     network.load_state_dict(tensors)
     return network.eval().to(memory_format=channels_last), found  # pyright: ignore[reportCallIssue]  (no stub for it)
 

@@ -45,7 +45,7 @@ def train(config: TrainingConfig, out: str | Path, device: str = "auto", progres
     )
     learned, validation = _split(examples, config.held_out)
     run = Learner(config, learned, target)
-    provenance = Provenance(config.plain(), hashes, run.mean, run.deviation)
+    provenance = Provenance(config.plain(), hashes, run.mean, run.deviation, int(learned.valid.sum()))
     with exclusive(out):
         (out / "training.json").write_text(note, "utf-8")
         _learn(run, validation, provenance, config, out, progress)
