@@ -8,8 +8,9 @@ policy is written NAME or NAME=WEIGHTS. Prints two Markdown tables, which
 beside what learns nothing; and the error and regret of the pick that each policy chose, beside those of a random first
 pick. Where a policy refuses a state, that counts as leaving the cloth as it is.
 
-What was executed is kept in ``DATA/policies``, so that another policy can be added later; other weights are another
-file. After a change to the code of a policy or of the simulator, remove the files of what it concerns.
+What was executed is kept in ``DATA/policies``, or beside a packed data set, so that another policy can be added later;
+other weights are another file. After a change to the code of a policy or of the simulator, remove the files of what it
+concerns.
 """
 
 from __future__ import annotations
@@ -99,7 +100,7 @@ def _executed(path: Path, data: Dataset, contestant: Contestant, workers: int) -
     from tqdm import tqdm
 
     contestant.create()
-    kept = JsonLines(path / "policies" / f"{contestant.file}.jsonl")
+    kept = JsonLines(_results(path) / f"{contestant.file}.jsonl")
     found: dict[int, list[float | None]] = {record["job"]: record["error_mm"] for record in kept.read()}
     interaction = Interaction(**data.description["parameters"])
     each = states_per_job(interaction)
@@ -111,6 +112,11 @@ def _executed(path: Path, data: Dataset, contestant: Contestant, workers: int) -
         found[job] = errors
     # None, where the cloth diverged, becomes NaN.
     return np.array([error for job in sorted(found) for error in found[job]], float)
+
+
+def _results(data: Path) -> Path:
+    """Where what was executed is kept: in a data set's folder, or beside its file."""
+    return data.with_name(f"{data.stem}-policies") if data.is_file() else data / "policies"
 
 
 def _refuse_other_states(there: NDArray[np.float32], ways: Sequence[float]) -> None:
