@@ -156,7 +156,9 @@ def _wordings(records: Iterable[StudyEpisodeRecord]) -> str:
     unseen = [str(number) for number, held_out in sorted(said.items()) if held_out]
     if len(unseen) == len(said):
         return f"{shown}, on which nothing was tuned"
-    return f"{shown}, of which nothing was tuned on {', '.join(unseen)}" if unseen else f"{shown}, not an unseen one"
+    if unseen:
+        return f"{shown}, of which nothing was tuned on {', '.join(unseen)}"
+    return f"{shown}, {'none of them unseen' if len(said) > 1 else 'not an unseen one'}"
 
 
 def _fabrics(results: Results) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -60,16 +60,22 @@ class Results:
         """Only the episodes whose task has one fold (``single``) or several (``multi``)."""
         wanted = {"single": lambda count: count == 1, "multi": lambda count: count > 1}[steps]
         kept = [r for r in self.records if r.steps_wanted is not None and wanted(r.steps_wanted)]
-        return self._only(kept, {"single": "task of one fold", "multi": "task of several folds"}[steps])
+        return self._only(kept, {"single": "a task of one fold", "multi": "a task of several folds"}[steps])
 
-    def of_wordings(self, wordings: str) -> Results:
-        """Only the episodes whose sentence nothing was tuned on (``unseen``), or only the others (``seen``).
+    def of_wordings(self, wordings: str | Collection[int]) -> Results:
+        """Only the episodes of some of the tasks' sentences.
+
+        Args:
+            wordings: their numbers; or ``unseen``, those that nothing was tuned on, or ``seen``, the others.
 
         Raises:
-            ConfigError: if the suite does not say which those are.
+            ConfigError: if the suite does not say which of them are unseen, or no episode is of these.
         """
+        if not isinstance(wordings, str):
+            said = ", ".join(map(str, sorted(wordings)))
+            return self._only([r for r in self.records if r.wording in wordings], f"a wording {said}")
         if wordings not in ("seen", "unseen"):
-            raise ConfigError(f"wordings are seen or unseen, not {wordings!r}; choose one of the two")
+            raise ConfigError(f"wordings are seen, unseen or numbers, not {wordings!r}; for example unseen, or 3,4")
         if all(record.wording_unseen is None for record in self.records):
             raise ConfigError(
                 f"this run doesn't say which wordings are unseen: the suite {self.study.suite} did not when it was "
@@ -77,12 +83,12 @@ class Results:
             )
         wanted = wordings == "unseen"
         kept = [record for record in self.records if record.wording_unseen == wanted]
-        return self._only(kept, f"{wordings} wording")
+        return self._only(kept, {"seen": "a seen wording", "unseen": "an unseen wording"}[wordings])
 
     def _only(self, records: Sequence[StudyEpisodeRecord], what: str) -> Results:
         """These records; raises ConfigError if there are none, though there were some."""
         if self.records and not records:
-            raise ConfigError(f"no episode of {self.study.name} is of a {what}; leave the choice out")
+            raise ConfigError(f"no episode of {self.study.name} is of {what}; leave the choice out")
         return replace(self, records=records)
 
     def plot(self, column: str = "success %") -> Figure:

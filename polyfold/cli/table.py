@@ -23,7 +23,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--steps", choices=["single", "multi"], help="only tasks of one fold, or of several")
     parser.add_argument(
-        "--wordings", choices=["unseen", "seen"], help="only sentences that nothing was tuned on, or only the others"
+        "--wordings",
+        metavar="unseen|seen|N,…",
+        help="only sentences that nothing was tuned on, only the others, or those of these numbers",
     )
     parser.add_argument("--compare", nargs=2, metavar=("VARIANT", "BASELINE"), help="paired differences instead")
     parser.add_argument(
@@ -35,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Print the table."""
     found = polyfold.open(arguments.out)
     found = found.of_length(arguments.steps) if arguments.steps else found
-    found = found.of_wordings(arguments.wordings) if arguments.wordings else found
+    found = found.of_wordings(_numbers_in(arguments.wordings)) if arguments.wordings else found
     noise = None if arguments.noise_floor is None else polyfold.open(arguments.noise_floor)
     if arguments.compare and arguments.by in ("step", "provider"):
         raise ConfigError(f"differences are not made by {arguments.by}; leave out --by, or --compare")
@@ -47,3 +49,9 @@ def run(arguments: argparse.Namespace) -> int:
         made = polyfold.table(found, groups=arguments.by, noise=noise)
     print(getattr(made, arguments.format)())
     return 0
+
+
+def _numbers_in(wordings: str) -> str | frozenset[int]:
+    """``3,4`` as numbers; what is none as it is."""
+    numbers = wordings.split(",")
+    return frozenset(map(int, numbers)) if all(number.strip().isdecimal() for number in numbers) else wordings

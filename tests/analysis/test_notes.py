@@ -1,38 +1,66 @@
 """A table says what its figures are worth: who answered, on which sentences, and which tasks are no measure."""
 
+from dataclasses import replace
+
 import pytest
 
 import polyfold
 from polyfold.analysis._columns import columns_of
+from polyfold.cli import main
 from polyfold.errors import ConfigError
 
 SETTINGS = {"tasks": ("square-corner-*", "square-triangle-top_left"), "first_seed": 2000, "edge_length": 0.03}
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory):
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("notes")
+
+
+@pytest.fixture(scope="module")
+def results(folder):
     base = polyfold.Study(name="notes", instructions="all", **SETTINGS)
     study = polyfold.ablate(base, "agent", ["polyfold", "oracle"])
-    return polyfold.run(study, tmp_path_factory.mktemp("notes"), progress=False)
+    return polyfold.run(study, folder, progress=False)
+
+
+@pytest.fixture
+def partly_unseen(results):
+    """The same run as if nothing had been tuned on the last two wordings."""
+    records = [r.model_copy(update={"wording_unseen": r.wording in (3, 4)}) for r in results.records]
+    return replace(results, records=records)
 
 
 def test_a_table_names_what_answered_the_wordings_the_fabric_and_the_commit(results):
     note = polyfold.table(results).note
     assert "folded geometrically" in note
     assert "answered by offline (a solver of this project, no language model)" in note
-    assert "wordings 0, 1, 2, 3, 4, of which nothing was tuned on 3, 4" in note
+    assert "wordings 0, 1, 2, 3, 4, none of them unseen" in note
     assert "fabrics poplin" in note
 
 
-def test_wordings_that_nothing_was_tuned_on_can_be_had_alone_and_lead(results):
-    unseen, seen = results.of_wordings("unseen"), results.of_wordings("seen")
+def test_wordings_that_nothing_was_tuned_on_can_be_had_alone_and_lead(partly_unseen):
+    assert "of which nothing was tuned on 3, 4" in polyfold.table(partly_unseen).note
+    unseen, seen = partly_unseen.of_wordings("unseen"), partly_unseen.of_wordings("seen")
     assert {record.wording for record in unseen.records} == {3, 4}
-    assert len(unseen.records) + len(seen.records) == len(results.records)
+    assert len(unseen.records) + len(seen.records) == len(partly_unseen.records)
     assert "wordings 3, 4, on which nothing was tuned" in polyfold.table(unseen).note
-    assert "wordings 0, 1, 2, not an unseen one" in polyfold.table(seen).note
-    groups = [row[1] for row in polyfold.table(results, groups="wording").rows if row[0] == "polyfold"]
+    assert "wordings 0, 1, 2, none of them unseen" in polyfold.table(seen).note
+    groups = [row[1] for row in polyfold.table(partly_unseen, groups="wording").rows if row[0] == "polyfold"]
     assert groups == ["3, unseen", "4, unseen", "0", "1", "2", "all"]
-    with pytest.raises(ConfigError, match="seen or unseen"):
+
+
+def test_wordings_can_be_had_by_number(results, folder, capsys):
+    some = results.of_wordings((1, 4))
+    assert {record.wording for record in some.records} == {1, 4}
+    assert main(["table", str(folder), "--wordings", "1,4", "--by", "wording"]) == 0
+    rows = [line.split(" | ")[1] for line in capsys.readouterr().out.splitlines() if line.startswith("| polyfold")]
+    assert rows == ["1", "4", "all"]
+    with pytest.raises(ConfigError, match="no episode of notes is of a wording 7"):
+        results.of_wordings([7])
+    with pytest.raises(ConfigError, match="no episode of notes is of an unseen wording"):
+        results.of_wordings("unseen")
+    with pytest.raises(ConfigError, match="for example unseen, or 3,4"):
         results.of_wordings("new")
 
 
