@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from polyfold_offline.cloth.folds import Fold
 from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
-from polyfold_offline.meaning.folding import folds_of, size_of
+from polyfold_offline.meaning.folding import Length, folds_of, size_of
 from polyfold_offline.meaning.goals import demands, folds_for_goal
 from polyfold_offline.meaning.outcomes import outcomes
 from polyfold_offline.meaning.program import CORNERS, EDGES, Piece, Program, places_of
@@ -21,12 +21,12 @@ _CODES = {
 }  # fmt: skip
 
 
-def allowance(program: Program, lengths: Sequence[float], garment: Garment, folds: Sequence[Fold]) -> float:
+def allowance(program: Program, lengths: Sequence[Length], garment: Garment, folds: Sequence[Fold]) -> float:
     """How far these folds are one way to do what a program asks for, 0 to 1.
 
     Args:
         program: what was read.
-        lengths: the lengths that the sentence names [cm].
+        lengths: the lengths that the sentence names.
         garment: what lies on the table.
         folds: the folds in question, in their order.
 
@@ -61,7 +61,7 @@ _LABOURED = 0.5
 """How far an end is meant that takes more folds than a wish needs: a triangle in half is a triangle too."""
 
 
-def _wished(program: Program, lengths: Sequence[float], garment: Garment, folds: Sequence[Fold]) -> float:
+def _wished(program: Program, lengths: Sequence[Length], garment: Garment, folds: Sequence[Fold]) -> float:
     end = next((outcome for outcome in outcomes(garment.family) if outcome.folds == tuple(folds)), None)
     if end is None:
         return 0.0

@@ -30,19 +30,23 @@ REASONS = {
 }
 
 
+Length = float | Fraction
+"""A length that a sentence names [cm], or, as a fraction, a share of the garment's side."""
+
+
 @dataclass
 class Folding:
     """Folds so far, and notes on what was left open.
 
     Attributes:
         garment: what lies on the table.
-        lengths: the lengths that the sentence names, in their order [cm].
+        lengths: the lengths that the sentence names, in their order.
         folds: in their order.
         notes: in words for the person.
     """
 
     garment: Garment
-    lengths: Sequence[float] = ()
+    lengths: Sequence[Length] = ()
     folds: list[Fold] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -52,12 +56,12 @@ class Folding:
             self.notes.append(text)
 
 
-def folds_of(program: Program, lengths: Sequence[float], garment: Garment) -> Folding:
+def folds_of(program: Program, lengths: Sequence[Length], garment: Garment) -> Folding:
     """The folds that a program asks for.
 
     Args:
         program: what was read.
-        lengths: the lengths that the sentence names [cm].
+        lengths: the lengths that the sentence names.
         garment: what lies on the table.
 
     Raises:
@@ -77,21 +81,27 @@ def folds_of(program: Program, lengths: Sequence[float], garment: Garment) -> Fo
     return folding
 
 
-def size_of(program: Program, lengths: Sequence[float]) -> tuple[float, float] | None:
+def size_of(program: Program, lengths: Sequence[Length]) -> tuple[float, float] | None:
     """The size that a goal must fit in [cm], if the program names one.
 
     Raises:
         NotUnderstoodError: if the sentence names no such lengths.
     """
     fit = next((piece for piece in program if piece.operation == "fit"), None)
-    return None if fit is None else (_length(fit.place, lengths), _length(fit.detail, lengths))
+    return None if fit is None else (_length(fit.place, lengths, None), _length(fit.detail, lengths, None))
 
 
-def _length(mark: str, lengths: Sequence[float]) -> float:
+def _length(mark: str, lengths: Sequence[Length], side_cm: float | None) -> float:
+    """A length that a sentence names [cm]; a share is one of a side, if that is known [cm]."""
     number = int(mark[1:])
     if number > len(lengths):
         raise NotUnderstoodError("it is unclear which length is meant")
-    return lengths[number - 1]
+    length = lengths[number - 1]
+    if not isinstance(length, Fraction):
+        return length
+    if side_cm is None:
+        raise NotUnderstoodError(f"I can't tell how much {length} of it is; say it in centimetres")
+    return round(float(length) * side_cm, 1)
 
 
 def _check(folds: list[Fold]) -> None:
@@ -171,11 +181,12 @@ def _strip(piece: Piece, folding: Folding) -> Fold:
     edge = _edge(piece, "band", folding)
     if not piece.detail.startswith("#"):
         return Fold("band", edge, share=Fraction(piece.detail))
-    width = _length(piece.detail, folding.lengths)
+    size = folding.garment.size_cm
+    side = None if size is None else size[0 if _across(edge) else 1]
+    width = _length(piece.detail, folding.lengths, side)
     if width <= 0:
         raise NotUnderstoodError("a strip of no width can't be turned over")
-    size = folding.garment.size_cm
-    if size is not None and width >= size[0 if _across(edge) else 1]:
+    if side is not None and width >= side:
         raise NotUnderstoodError(f"a strip of {width:g} cm is wider than the {folding.garment.spoken}")
     return Fold("band", edge, cm=width)
 

@@ -44,11 +44,11 @@ _ALLOWED: dict[str, dict[str, tuple[str, ...]]] = {
     "square": {"half": _WAYS, "mid": _WAYS, **_STRIPS, **_CORNERS, "goal": _CLOTH_GOALS},
     "rectangle": {"half": (*_WAYS, "long", "short"), "mid": _WAYS, **_STRIPS, **_CORNERS, "goal": _CLOTH_GOALS},
     "tshirt": {
-        "half": _WAYS, "mid": ("L", "R", "any"), **_STRIPS, "sleeve": ("L", "R", "any"),
+        "half": _WAYS, "mid": (*EDGES, "any"), **_STRIPS, "sleeve": ("L", "R", "any"),
         "goal": (*_ANY_GOALS, "sleeveless"),
     },
     "pants": {
-        "half": _WAYS, "mid": ("L", "R", "any"), **_STRIPS,
+        "half": _WAYS, "mid": (*EDGES, "any"), **_STRIPS,
         "goal": (*_ANY_GOALS, "sixteenth", "shorts", "one-leg"),
     },
     "other": {"half": _WAYS, "mid": _WAYS, **_STRIPS, "goal": _ANY_GOALS},

@@ -84,6 +84,8 @@ class Reader:
         """The ways to understand a sentence, the likeliest first; those with the same folds are one."""
         if _OTHER_WORK.match(sentence):
             return [Reading((Piece("no", "action"),), None, REASONS["action"], 1.0)]
+        if _TAKEN_BACK.search(sentence):
+            return [Reading((Piece("no", "contradiction"),), None, "it takes back what it asks for", 1.0)]
         if (program := program_of_shortest_order(sentence, garment)) is not None:
             return [Reading(program, folds_of(program, (), garment), "", 1.0)]
         read = take_lengths(_in_known_words(sentence, garment))
@@ -116,6 +118,14 @@ _OTHER_WORK = re.compile(
 )
 """Orders that begin with one of these verbs ask for no fold: of 45 such sentences written to learn from, none does."""
 
+_TAKEN_BACK = re.compile(
+    r"\b(?:never ?mind|forget (?:it|that|about it|the whole thing)|cancel (?:it|that|everything)|scratch (?:it|that)"
+    r"|don'?t do anything|do nothing|leave (?:it|everything) (?:as it is|alone))"
+    r"(?:,? (?:please|after all|then|sorry|thanks))*\W*$",
+    re.IGNORECASE,
+)
+"""What a person ends with who wants nothing done after all."""
+
 _SECOND_STATEMENT = re.compile(
     r"[,;:!?\n]|\.(?=\s*\w)|\b(?:and|but|while|whilst|yet|although|though|without|also|same|only|just|both|one|once|single|or|"
     r"stay|stays|keep|keeping|leave|leaving|at|not|don't|never)\b",
@@ -123,7 +133,7 @@ _SECOND_STATEMENT = re.compile(
 )
 """Something that a sentence could contradict itself with."""
 
-_CLAUSES = re.compile(r"[.;:!?\n]+|,\s+(?:and\s+)?(?:then\s+)?|\s+(?:and\s+)?then\s+")
+_CLAUSES = re.compile(r"\.+(?!\d)|[;:!?\n]+|,\s+(?:and\s+)?(?:then\s+)?|\s+(?:and\s+)?then\s+")
 _MANY_CLAUSES = 8
 _LONG = 25
 

@@ -6,22 +6,24 @@ import re
 import unicodedata
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
+
+from polyfold_offline.reading.numbers import with_last_numbers, with_plain_shares
 
 MAX_CHARACTERS = 1500
 """Longer sentences are cut; no request is."""
 
-_CM = {"mm": 0.1, "millimet": 0.1, "cm": 1.0, "centimet": 1.0, "m": 100.0, "met": 100.0, "inch": 2.54}
-_UNIT = (
-    r"(?P<unit>mm|millimet(?:er|re)s?|cms?|centimet(?:er|re)s?|inch(?:es)?|m\b"
-    r"|met(?:er|re)s?)"
-)
+_CM = {"mm": 0.1, "millimet": 0.1, "milimet": 0.1, "cm": 1.0, "centimet": 1.0, "m": 100.0, "met": 100.0, "inch": 2.54}
+_UNITS = r"(?:mm|mill?imet(?:er|re)s?|cms?|centimet(?:er|re)s?|inch(?:es)?|m\b|met(?:er|re)s?)"
+_UNIT = rf"(?P<unit>{_UNITS})"
 _NUMBERS = """zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen
 seventeen eighteen nineteen twenty"""
 _WORD_NUMBERS = {word: number for number, word in enumerate(_NUMBERS.split())}
-_WORD_NUMBERS |= {"thirty": 30, "forty": 40, "fifty": 50, "sixty": 60}
+_TENS = {"twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90}
+_WORD_NUMBERS |= _TENS
 _AMOUNT = (
-    r"(?<![\w.,/])(?:\d+(?:[.,]\d+)?|(?:(?:twenty|thirty|forty|fifty|sixty)[ -])?"
+    r"(?<![\w.,/])(?:\d+(?:[.,]\d+)?|(?:(?:twenty|thirty|forty|fifty|sixty|seventy|eighty|ninety)[ -])?"
     rf"(?:{'|'.join(_WORD_NUMBERS)})(?:\s+and\s+a\s+half)?)"
 )
 _LENGTH = re.compile(
@@ -33,15 +35,15 @@ _WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)?")
 
 @dataclass(frozen=True)
 class Read:
-    """A sentence with marks ``#1``, ``#2`` for the lengths in it, and these [cm]."""
+    """A sentence with marks ``#1``, ``#2`` for the lengths in it, and these: [cm], or shares of the garment's side."""
 
     text: str
-    lengths: tuple[float, ...]
+    lengths: tuple[float | Fraction, ...]
 
 
 def take_lengths(sentence: str) -> Read:
     """Put marks in the place of lengths with a unit, and of sizes such as ``20 x 30``."""
-    lengths: list[float] = []
+    lengths: list[float | Fraction] = []
 
     def mark(match: re.Match[str]) -> str:
         unit = match.groupdict().get("unit") or "cm"
@@ -56,9 +58,18 @@ def take_lengths(sentence: str) -> Read:
         return f" {' by '.join(marks)} cm"
 
     text = unicodedata.normalize("NFKC", sentence)[:MAX_CHARACTERS]
-    text = _LENGTH.sub(mark, text.replace("’", "'"))
+    text = with_last_numbers(text.replace("’", "'").replace("⁄", "/"), _AMOUNT, _UNITS)
+    text = _LENGTH.sub(mark, text)
     text = _PAIR.sub(mark, text)
+    text, shares = with_plain_shares(text, _SHARE_MARK)
+    for share in shares:
+        lengths.append(share)
+        text = text.replace(_SHARE_MARK, f"#{len(lengths)} cm", 1)
     return Read(" ".join(text.split()), tuple(lengths))
+
+
+_SHARE_MARK = "\ufffc"
+"""Stands for a share until it has its number; Unicode's placeholder for an object, which no keyboard types."""
 
 
 def _number(words: str) -> float:

@@ -60,7 +60,8 @@ def make_example(family: str, text: str, meaning: str, register: str) -> Example
     renamed = {}
     for number, length in enumerate(lengths, 1):
         same = [i for i, other in enumerate(read.lengths, 1) if abs(other - length) < 0.01]
-        at = [i for i in same if f"#{i}" not in renamed.values()]
+        # What is said once may be meant twice: *8 cm at the top, and the same at the bottom*.
+        at = [i for i in same if f"#{i}" not in renamed.values()] or same
         if not at or at[0] > 4:
             return None
         renamed[f"#{number}"] = f"#{at[0]}"
