@@ -169,11 +169,18 @@ def _with_hand(picture: Floats, garment: Mask, rng: np.random.Generator) -> tupl
     steps = np.linspace(0, 1, 400)[:, None]
     hand = _thick(wrist + steps * 700 * out, 22.0) | _thick(wrist - steps * 22 * out, 29.0)
     for spread in (-24, -8, 8, 24):
-        hand |= _thick(wrist - 22 * out + spread * aside + steps * (rng.uniform(40, 55) * -out + 0.2 * spread * aside), 7)
-    skin = np.array(SKINS[rng.integers(len(SKINS))], float) * (1.0 + 0.05 * smooth_noise(hand.shape, 10, rng))[..., None]
+        hand |= _thick(
+            wrist - 22 * out + spread * aside + steps * (rng.uniform(40, 55) * -out + 0.2 * spread * aside), 7
+        )
+    skin = (
+        np.array(SKINS[rng.integers(len(SKINS))], float) * (1.0 + 0.05 * smooth_noise(hand.shape, 10, rng))[..., None]
+    )
     depth = np.asarray(ndimage.distance_transform_edt(hand))
     skin = skin * (1.0 - 0.3 * np.exp(-depth / 5.0))[..., None]
-    picture = picture * (1.0 - 0.35 * ndimage.gaussian_filter(ndimage.shift(hand.astype(float), (5, 4), order=0), 5))[..., None]
+    picture = (
+        picture
+        * (1.0 - 0.35 * ndimage.gaussian_filter(ndimage.shift(hand.astype(float), (5, 4), order=0), 5))[..., None]
+    )
     return _over(picture, skin, hand), garment & ~hand
 
 

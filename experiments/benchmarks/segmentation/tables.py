@@ -53,7 +53,9 @@ def _marble(height: int, width: int, rng: np.random.Generator) -> Floats:
     share = 0.12 * np.clip(clouds, 0, 2)
     for sigma, strength in ((40, 0.7), (22, 0.5), (10, 0.25)):
         field = smooth_noise(shape, sigma, rng) + 0.25 * smooth_noise(shape, sigma / 4, rng)
-        share += strength * np.exp(-np.abs(field) / rng.uniform(0.03, 0.08)) * np.clip(smooth_noise(shape, 60, rng), 0, 1)
+        share += (
+            strength * np.exp(-np.abs(field) / rng.uniform(0.03, 0.08)) * np.clip(smooth_noise(shape, 60, rng), 0, 1)
+        )
     share = np.clip(share, 0, 0.9)[..., None]
     return ground * (1 - share) + vein * share + 2.0 * smooth_noise(shape, 1, rng)[..., None]
 
