@@ -1,1 +1,1 @@
-"""How well cloth is told from the table on photographs; ``python -m experiments.benchmarks.segmentation`` measures it."""
+"""How well cloth is told from the table on photographs; ``python -m experiments.benchmarks.segmentation``."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import GroundingError
 from polyfold.types import Observation
-from polyfold_standard.segmenters.blobs import enlarged
+from polyfold_standard.segmenters.blobs import finished
 from polyfold_standard.segmenters.choosing import best, candidates, doubts_about, reduced, smoothed
 from polyfold_standard.segmenters.light import border_band, colours_of, unlike, unlike_picture
 
@@ -46,6 +47,13 @@ class BackgroundDifference:
             default=0.015, gt=0, le=0.2, description="what is thinner is no cloth, share of the picture's longer side"
         )
 
+    argument: ClassVar[str] = "picture"
+
+    @classmethod
+    def files_read(cls, config: Config) -> Sequence[Path]:
+        """The picture of the empty table."""
+        return [config.picture]
+
     def __init__(self, config: Config) -> None:
         self._config = config
         self._empty = _read(config.picture)
@@ -68,7 +76,7 @@ class BackgroundDifference:
 
         thin = max(1, round(self._config.thin * max(small.shape[:2]) / 2))
         found = list(candidates(small, unlike_table, thin))
-        return enlarged(best(found, self._config.smallest).mask, rgb.shape[:2])
+        return finished(rgb, best(found, self._config.smallest).mask)
 
     def doubts(self, observation: Observation, mask: Mask) -> Sequence[str]:
         """What speaks against a mask, one line each."""

@@ -13,7 +13,6 @@ from polyfold_standard.segmenters.blobs import (
     closed,
     enlarged,
     grown,
-    main_blob,
     opened,
     rim,
     share_at_border,
@@ -176,7 +175,7 @@ def cut(small: Picture, mask: Mask, distance: Floats, limit: float) -> Mask:
     if not (labels == cv2.GC_FGD).any():
         return mask
     cv2.setRNGSeed(0)
-    cv2.grabCut(small, labels, None, np.zeros((1, 65)), np.zeros((1, 65)), CUTS, cv2.GC_INIT_WITH_MASK)
+    cv2.grabCut(small, labels, (0, 0, 1, 1), np.zeros((1, 65)), np.zeros((1, 65)), CUTS, cv2.GC_INIT_WITH_MASK)
     return np.asarray((labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD))
 
 

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.errors import GroundingError
 from polyfold.types import Observation
-from polyfold_standard.segmenters.blobs import enlarged, filled, main_blob, tidy
+from polyfold_standard.segmenters.blobs import filled, finished, main_blob, tidy
 from polyfold_standard.segmenters.choosing import doubts_about, reduced
 from polyfold_standard.segmenters.photo import PhotoSegmenter
 from polyfold_standard.segmenters.prompts import Box, Stroke, in_pixels
@@ -57,7 +57,7 @@ class GrabCut:
         mask = tidy(found, thin) if thin else filled(main_blob(found))
         if not mask.any():
             raise GroundingError("GrabCut found no cloth; give a box that is nearer to it, or a stroke on it")
-        return enlarged(mask, observation.rgb.shape[:2])
+        return finished(observation.rgb, mask)
 
     def doubts(self, observation: Observation, mask: Mask) -> Sequence[str]:
         """What speaks against a mask, one line each."""
@@ -102,7 +102,7 @@ def _divided(small: Picture, labels: Picture, rounds: int) -> Mask:
 
     cv2.setRNGSeed(0)
     try:
-        cv2.grabCut(small, labels, None, np.zeros((1, 65)), np.zeros((1, 65)), rounds, cv2.GC_INIT_WITH_MASK)
+        cv2.grabCut(small, labels, (0, 0, 1, 1), np.zeros((1, 65)), np.zeros((1, 65)), rounds, cv2.GC_INIT_WITH_MASK)
     except cv2.error as error:  # a box or strokes that leave one of the two without a pixel
         raise GroundingError("GrabCut needs both cloth and table; give a box with table around it") from error
     return np.asarray((labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD))

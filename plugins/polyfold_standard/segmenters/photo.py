@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.types import Observation
-from polyfold_standard.segmenters.blobs import enlarged
+from polyfold_standard.segmenters.blobs import finished
 from polyfold_standard.segmenters.choosing import best, candidates, doubts_about, reduced, smoothed
 from polyfold_standard.segmenters.light import border_band, colours_of, unlike
 
@@ -44,7 +44,7 @@ class PhotoSegmenter:
         table = colours_of(soft[border_band(small.shape[:2])])
         thin = max(1, round(self._config.thin * max(small.shape[:2]) / 2))
         found = list(candidates(small, lambda light: unlike(soft, table, light), thin))
-        return enlarged(best(found, self._config.smallest).mask, observation.rgb.shape[:2])
+        return finished(observation.rgb, best(found, self._config.smallest).mask)
 
     def doubts(self, observation: Observation, mask: Mask) -> Sequence[str]:
         """What speaks against a mask, one line each."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,13 @@ class PromptableSegmenter:
         box: Box | None = Field(default=None, description="[left, top, right, bottom] around the cloth")
         points: tuple[Point, ...] = Field(default=(), description="points on the cloth; by default the middle")
         no_cloth: tuple[Point, ...] = Field(default=(), description="points that are no cloth")
+
+    argument: ClassVar[str] = "weights"
+
+    @classmethod
+    def files_read(cls, config: Config) -> Sequence[Path]:
+        """The network."""
+        return [config.weights]
 
     def __init__(self, config: Config) -> None:
         self._config = config
@@ -106,7 +113,7 @@ def _load(path: Path) -> Any:
     names = zipfile.ZipFile(path).namelist() if zipfile.is_zipfile(path) else []
     if not any(name.endswith("constants.pkl") for name in names) or not any("/code/" in name for name in names):
         raise GroundingError(
-            f"{path} is no TorchScript file; export the network with torch.jit, a checkpoint of weights would need pickle"
+            f"{path} is no TorchScript file; export the network with torch.jit (a checkpoint would need pickle)"
         )
     try:
         return torch.jit.load(str(path), map_location="cpu").eval()
