@@ -42,7 +42,8 @@ def find_board(rgb: NDArray[np.uint8], description: str) -> tuple[Floats, Floats
             f"of the board {description} {count} corners are seen, at least {FEWEST} are needed; show more of it, "
             "larger and sharp, or check its description"
         )
-    places = np.asarray(board.getChessboardCorners(), float)[np.ravel(numbers), :2]
+    everywhere = np.array(board.getChessboardCorners(), float)
+    places = everywhere[np.asarray(numbers, int).ravel(), :2]
     pixels = np.asarray(corners, float).reshape(-1, 2)
     if np.linalg.svd(places - places.mean(axis=0))[1][-1] < 1e-6:
         raise GarmentError(f"the corners of {description} that are seen lie in one row; show more of the board")

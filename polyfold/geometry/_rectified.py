@@ -49,7 +49,7 @@ class Rectified:
 
     def in_photo(self, places: ArrayLike) -> Floats:
         """Pixels, shape (N, 2), of places on the table [m], shape (N, 2)."""
-        return mapped(np.asarray(np.linalg.inv(self.to_metres)), np.asarray(places, float))
+        return mapped(np.asarray(np.linalg.inv(self.to_metres), np.float64), np.asarray(places, float))
 
     def pixels_per_metre(self, pixels: ArrayLike) -> float:
         """The photograph's scale around some pixels, shape (N, 2): the median of what areas are magnified by [px/m]."""

@@ -13,7 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.errors import GroundingError
 from polyfold.types import Observation
 from polyfold_standard.segmenters.blobs import finished
-from polyfold_standard.segmenters.choosing import best, candidates, doubts_about, reduced, smoothed
+from polyfold_standard.segmenters.choosing import best, candidates, reduced, smoothed
+from polyfold_standard.segmenters.doubting import doubts_about
 from polyfold_standard.segmenters.light import border_band, colours_of, unlike, unlike_picture
 
 Mask = NDArray[np.bool_]
@@ -121,6 +122,7 @@ def _in_the_light_of(soft: Picture, before: Picture) -> Picture:
     ratio = np.log((soft[band] + 4.0) / (before[band] + 4.0))
     design = np.column_stack([np.ones(len(rows)), columns, rows])
     used = np.ones(len(rows), bool)
+    plane = np.zeros((3, 3))
     for _ in range(ROUNDS):  # what reaches in at the border is left out
         plane = np.linalg.lstsq(design[used], ratio[used], rcond=None)[0]
         off = np.abs(ratio - design @ plane).max(axis=1)

@@ -77,7 +77,7 @@ def filled(mask: Mask) -> Mask:
     _, labels, statistics, _ = cv2.connectedComponentsWithStats((~mask).astype(np.uint8), connectivity=4)
     small = statistics[:, cv2.CC_STAT_AREA] <= LARGEST_HOLE * mask.size
     small[0] = False
-    return mask | small[np.asarray(labels)]
+    return mask | np.isin(labels, np.flatnonzero(small))
 
 
 def tidy(mask: Mask, thin: int) -> Mask:
@@ -106,8 +106,7 @@ def finished(rgb: NDArray[np.uint8], mask: Mask) -> Mask:
 
 
 def sharpened(rgb: NDArray[np.uint8], mask: Mask, reach: int) -> Mask:
-    """A mask whose outline is moved by up to ``reach`` pixels: each pixel there is cloth if it looks more like the cloth
-    beside it than like the table beside it.
+    """A mask with its outline moved: a pixel there is cloth if it looks more like the cloth than the table beside it.
 
     Args:
         rgb: the picture, uint8, shape (H, W, 3).

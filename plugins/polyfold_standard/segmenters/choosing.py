@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from polyfold.errors import GroundingError
 from polyfold_standard.segmenters.blobs import (
     closed,
-    enlarged,
     grown,
     opened,
     rim,
@@ -177,19 +176,6 @@ def cut(small: Picture, mask: Mask, distance: Floats, limit: float) -> Mask:
     cv2.setRNGSeed(0)
     cv2.grabCut(small, labels, (0, 0, 1, 1), np.zeros((1, 65)), np.zeros((1, 65)), CUTS, cv2.GC_INIT_WITH_MASK)
     return np.asarray((labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD))
-
-
-def doubts_about(rgb: Picture, mask: Mask) -> tuple[str, ...]:
-    """What speaks against a mask, bool, shape (H, W), of a picture, uint8, shape (H, W, 3): one line each."""
-    small = reduced(rgb)
-    less = enlarged(mask, small.shape[:2])
-    found = []
-    seen, _ = outline_seen(slopes_of(small), less)
-    if seen < 0.9:
-        found.append(f"along {1 - seen:.0%} of the outline nothing sets the cloth apart from the table")
-    if (cut_off := share_at_border(less)) > 0.02:
-        found.append(f"the picture's border cuts the cloth off along {cut_off:.0%} of its outline")
-    return tuple(found)
 
 
 def _limit(distance: Floats, noise: float) -> float:

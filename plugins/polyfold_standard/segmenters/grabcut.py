@@ -11,7 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.errors import GroundingError
 from polyfold.types import Observation
 from polyfold_standard.segmenters.blobs import filled, finished, main_blob, tidy
-from polyfold_standard.segmenters.choosing import doubts_about, reduced
+from polyfold_standard.segmenters.choosing import reduced
+from polyfold_standard.segmenters.doubting import doubts_about
 from polyfold_standard.segmenters.photo import PhotoSegmenter
 from polyfold_standard.segmenters.prompts import Box, Stroke, in_pixels
 

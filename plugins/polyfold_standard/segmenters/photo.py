@@ -10,7 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.types import Observation
 from polyfold_standard.segmenters.blobs import finished
-from polyfold_standard.segmenters.choosing import best, candidates, doubts_about, reduced, smoothed
+from polyfold_standard.segmenters.choosing import best, candidates, reduced, smoothed
+from polyfold_standard.segmenters.doubting import doubts_about, with_inlays
 from polyfold_standard.segmenters.light import border_band, colours_of, unlike
 
 Mask = NDArray[np.bool_]
@@ -44,7 +45,8 @@ class PhotoSegmenter:
         table = colours_of(soft[border_band(small.shape[:2])])
         thin = max(1, round(self._config.thin * max(small.shape[:2]) / 2))
         found = list(candidates(small, lambda light: unlike(soft, table, light), thin))
-        return finished(observation.rgb, best(found, self._config.smallest).mask)
+        mask = with_inlays(small, best(found, self._config.smallest), found)
+        return finished(observation.rgb, mask)
 
     def doubts(self, observation: Observation, mask: Mask) -> Sequence[str]:
         """What speaks against a mask, one line each."""

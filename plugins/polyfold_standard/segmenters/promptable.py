@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.errors import GroundingError
 from polyfold.types import Observation
 from polyfold_standard.segmenters.blobs import filled, main_blob
-from polyfold_standard.segmenters.choosing import doubts_about
+from polyfold_standard.segmenters.doubting import doubts_about
 from polyfold_standard.segmenters.prompts import Box, Point, in_pixels
 
 Mask = NDArray[np.bool_]

@@ -28,7 +28,7 @@ def add_component_options(
     """
     group = parser.add_argument_group("components (see: polyfold plugins)")
     for kind in kinds:
-        default = (defaults or {}).get(kind, getattr(Experiment(), kind).name)
+        default: str = (defaults or {}).get(kind) or getattr(Experiment(), kind).name
         default += MEANING.get(default, "")
         group.add_argument(f"--{kind}", metavar="NAME[:ARG]", help=f"default: {default}")
     if "agent" in kinds:
