@@ -75,10 +75,9 @@ def _board(description: str) -> tuple[Any, tuple[float, float]]:
             f"the board {description!r} can't be: give 2 to 50 squares each way, of up to 1000 mm, and smaller markers"
         )
     dictionary = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, name))
-    try:
-        board = cv2.aruco.CharucoBoard((columns, rows), square, marker, dictionary)
-    except cv2.error as error:
+    if columns * rows // 2 > len(dictionary.bytesList):
         raise GarmentError(
-            f"the markers {name} do not suffice for {columns} x {rows} squares; give a larger dictionary"
-        ) from error
+            f"the markers {name} do not suffice for {columns} x {rows} squares; name a larger dictionary"
+        )
+    board = cv2.aruco.CharucoBoard((columns, rows), square, marker, dictionary)
     return board, (columns * square, rows * square)

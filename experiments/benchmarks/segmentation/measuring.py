@@ -82,10 +82,10 @@ def takes_empty_table(scene: DrawnScene) -> bool:
 
 
 def real_outlines(folder: Path, rows: int) -> list[NDArray[np.float64]]:
-    """The first rows of each file of outlines in a folder (aRTF Clothes, see the data's README), [px]."""
+    """The first odd rows of each file of outlines in a folder (aRTF Clothes, see the data's README), [px]."""
     found = []
     for file in sorted(folder.glob("*.jsonl")):
-        for line in file.read_text("utf-8").splitlines()[:rows]:
+        for line in file.read_text("utf-8").splitlines()[1::2][:rows]:
             found.append(np.array(max(json.loads(line)["mask"], key=len), float))
     return found
 

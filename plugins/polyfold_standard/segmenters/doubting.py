@@ -84,7 +84,7 @@ def _light_alone(small: Picture, mask: Mask) -> float:
     table = colours_of(soft[border_band(small.shape[:2])])
     distance = unlike(soft, table, 0.6)
     noise = float(np.percentile(distance[border_band(small.shape[:2])], 90))
-    return float((opened(distance < 1.5 * noise, 1) & inner).sum() / inner.sum())
+    return float((opened(distance < max(1.5, 1.5 * noise), 1) & inner).sum() / inner.sum())
 
 
 def _hull(mask: Mask) -> Mask:

@@ -104,6 +104,7 @@ class PromptableSegmenter:
 
 def _load(path: Path) -> Any:
     """The network of a TorchScript file; such files are archives, and nothing in them is unpickled by Python."""
+    import warnings
     import zipfile
 
     import torch
@@ -116,7 +117,9 @@ def _load(path: Path) -> Any:
             f"{path} is no TorchScript file; export the network with torch.jit (a checkpoint would need pickle)"
         )
     try:
-        return torch.jit.load(str(path), map_location="cpu").eval()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # torch's, of the format that such networks come in
+            return torch.jit.load(str(path), map_location="cpu").eval()
     except (RuntimeError, ValueError) as error:
         reason = (str(error).strip().splitlines() or ["no reason given"])[0]
         raise GroundingError(

@@ -1,0 +1,231 @@
+"""Cloth is told from real-looking tables in any light by the segmenters for photographs; nothing there is refused."""
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from experiments.benchmarks.segmentation.scenes import KINDS, drawn_scene
+from polyfold import plugins
+from polyfold.errors import ConfigError, GroundingError
+from polyfold.geometry import Camera, iou
+from polyfold.types import Observation
+
+scene = lru_cache(drawn_scene)
+FIRST = 1001  # of the seeds for development; the kinds take turns from here on
+
+
+def observed(rgb):
+    height, width = rgb.shape[:2]
+    return Observation(rgb, np.full((height, width), 2.0, np.float32), Camera(width, height))
+
+
+def segmenter(name, **params):
+    return plugins.create("segmenters", name, params)
+
+
+def saved(rgb, path):
+    Image.fromarray(rgb).save(path)
+    return str(path)
+
+
+def box_around(mask, margin=0.03):
+    (rows, columns), (height, width) = np.nonzero(mask), mask.shape
+    low = (columns.min() / width - margin, rows.min() / height - margin)
+    high = (columns.max() / width + margin, rows.max() / height + margin)
+    return [float(np.clip(value, 0, 1)) for value in (*low, *high)]
+
+
+@pytest.mark.parametrize("seed", range(FIRST, FIRST + len(KINDS)), ids=lambda seed: scene(seed).kind)
+class TestEveryKindOfScene:
+    def test_the_automatic_one_finds_the_garment_and_nothing_on_the_empty_table(self, seed):
+        photo = segmenter("photo")
+        assert iou(photo.segment(observed(scene(seed).rgb)), scene(seed).mask) > 0.95
+        with pytest.raises(GroundingError, match="no cloth stands out"):
+            photo.segment(observed(scene(seed).empty))
+
+    def test_a_picture_of_the_empty_table_finds_it_in_other_light(self, seed, tmp_path):
+        background = segmenter("background", picture=saved(scene(seed).empty, tmp_path / "empty.png"))
+        found = background.segment(observed(scene(seed).rgb))
+        assert iou(found, scene(seed).mask) > (0.85 if scene(seed).kind == "pattern" else 0.95)
+
+
+class TestPhoto:
+    def test_a_mask_is_the_same_whenever_it_is_made(self):
+        first, again = (segmenter("photo").segment(observed(scene(FIRST).rgb)) for _ in range(2))
+        np.testing.assert_array_equal(first, again)
+
+    def test_a_cable_is_cut_off_unless_thin_things_count(self):
+        seen = scene(FIRST + KINDS.index("cable") - KINDS.index(scene(FIRST).kind))
+        assert seen.kind == "cable"
+        beside = segmenter("photo").segment(observed(seen.rgb)) & ~seen.mask
+        kept = segmenter("photo", thin=0.003).segment(observed(seen.rgb)) & ~seen.mask
+        assert beside.sum() < 0.005 * seen.mask.sum()
+        assert kept.sum() >= beside.sum()
+
+    def test_two_garments_are_one_too_many(self):
+        rgb = np.full((300, 400, 3), 200, np.uint8)
+        rgb[80:220, 60:160] = rgb[80:220, 240:340] = (40, 60, 140)
+        with pytest.raises(GroundingError, match="several things"):
+            segmenter("photo").segment(observed(rgb))
+
+    def test_cloth_that_the_border_cuts_off_is_doubted(self):
+        rgb, mask = np.full((300, 400, 3), 200, np.uint8), np.zeros((300, 400), bool)
+        mask[100:, 120:280] = True
+        rgb[mask] = (40, 60, 140)
+        assert any("border cuts the cloth off" in doubt for doubt in segmenter("photo").doubts(observed(rgb), mask))
+        whole = np.zeros_like(mask)
+        whole[100:250, 120:280] = True
+        assert segmenter("photo").doubts(observed(np.where(whole[..., None], rgb[200, 200], rgb[10, 10])), whole) == ()
+
+    def test_a_shadow_that_is_taken_for_cloth_is_doubted_and_so_is_an_outline_that_nothing_shows(self):
+        rgb = np.full((300, 400, 3), (200, 170, 140), np.uint8)
+        rgb[80:200, 100:300] = (130, 110, 91)
+        shadow = np.zeros((300, 400), bool)
+        shadow[80:200, 100:300] = True
+        assert any("shadow" in doubt for doubt in segmenter("photo").doubts(observed(rgb), shadow))
+        invented = np.zeros((300, 400), bool)
+        invented[140:280, 40:180] = True
+        assert any(
+            "nothing sets the cloth apart" in doubt for doubt in segmenter("photo").doubts(observed(rgb), invented)
+        )
+
+
+class TestBackground:
+    def test_a_hand_that_reaches_in_is_no_cloth(self, tmp_path):
+        rng = np.random.default_rng(0)
+        empty = rng.normal((120, 130, 140), 4, (300, 400, 3)).clip(0, 255).astype(np.uint8)
+        mask = np.zeros((300, 400), bool)
+        mask[90:210, 120:260] = True
+        laden = np.where(mask[..., None], (60, 80, 170), empty).astype(np.uint8)
+        laden[130:170, 255:] = (210, 160, 130)
+        background = segmenter("background", picture=saved(empty, tmp_path / "empty.png"))
+        cloth = mask.copy()
+        cloth[130:170, 255:] = False
+        assert iou(background.segment(observed(laden)), cloth) > 0.97
+
+    def test_nothing_new_is_no_cloth(self, tmp_path):
+        background = segmenter("background", picture=saved(scene(FIRST).empty, tmp_path / "empty.png"))
+        with pytest.raises(GroundingError, match="no cloth stands out"):
+            background.segment(observed(scene(FIRST).empty))
+
+    def test_a_picture_of_another_shape_is_refused_with_both_sizes_and_one_of_another_resolution_is_not(self, tmp_path):
+        seen = scene(FIRST)
+        cropped = segmenter("background", picture=saved(seen.empty[:400], tmp_path / "cropped.png"))
+        with pytest.raises(GroundingError, match=r"640 x 400 px, the one with cloth 640 x 480.*same camera"):
+            cropped.segment(observed(seen.rgb))
+        half = np.asarray(Image.fromarray(seen.empty).resize((320, 240)))
+        background = segmenter("background", picture=saved(half, tmp_path / "half.png"))
+        assert iou(background.segment(observed(seen.rgb)), seen.mask) > 0.95
+
+    def test_a_missing_or_damaged_picture_is_named(self, tmp_path):
+        (tmp_path / "text.png").write_text("hello")
+        for name, says in (("absent.png", "No such file"), ("text.png", "no picture")):
+            with pytest.raises(GroundingError, match=rf"{name}.*{says}.*give a PNG or JPEG"):
+                segmenter("background", picture=str(tmp_path / name))
+
+
+class TestGrabCut:
+    def test_a_box_says_which_of_two_things_is_meant(self):
+        rgb = np.random.default_rng(1).normal(200, 4, (300, 400, 3)).clip(0, 255).astype(np.uint8)
+        left, right = np.zeros((2, 300, 400), bool)
+        left[80:220, 60:160] = right[80:220, 240:340] = True
+        rgb[left | right] = (40, 60, 140)
+        for mask in (left, right):
+            assert iou(segmenter("grabcut", box=box_around(mask)).segment(observed(rgb)), mask) > 0.98
+
+    def test_without_a_box_it_finds_one(self):
+        assert iou(segmenter("grabcut").segment(observed(scene(FIRST).rgb)), scene(FIRST).mask) > 0.95
+
+    def test_a_stroke_on_the_table_takes_away_what_was_taken_for_cloth(self):
+        rgb = np.full((300, 400, 3), 200, np.uint8)
+        rgb[100:200, 100:300] = (40, 60, 140)
+        rgb[130:170, 300:360] = (60, 150, 60)
+        cloth = np.zeros((300, 400), bool)
+        cloth[100:200, 100:300] = True
+        box = [0.2, 0.25, 0.95, 0.75]
+        without = segmenter("grabcut", box=box).segment(observed(rgb))
+        with_it = segmenter("grabcut", box=box, table=[[[0.78, 0.5], [0.88, 0.5]]]).segment(observed(rgb))
+        assert without[150, 330]
+        assert iou(with_it, cloth) > 0.97
+
+    @pytest.mark.parametrize(
+        "params", [{"box": [0.5, 0.1, 0.2, 0.9]}, {"box": [10, 20, 300, 200]}, {"cloth": [[[0.5, 2]]]}, {"cloth": [[]]}]
+    )
+    def test_boxes_in_pixels_or_inside_out_are_refused(self, params):
+        with pytest.raises(ConfigError, match=rf"'grabcut' has a bad value for '{next(iter(params))}"):
+            segmenter("grabcut", **params)
+
+    def test_a_box_without_any_table_is_refused(self):
+        with pytest.raises(GroundingError, match="leaves no table"):
+            segmenter("grabcut", box=[0, 0, 1, 1]).segment(observed(scene(FIRST).rgb))
+
+
+@pytest.mark.filterwarnings("ignore:.*torch.jit:DeprecationWarning")
+class TestPromptable:
+    """A real network, as TorchScript: it answers with what has the colour of the points on the cloth."""
+
+    @pytest.fixture
+    def weights(self, tmp_path):
+        import torch
+
+        class AsThePoint(torch.nn.Module):
+            def forward(self, image, points, labels):
+                at = points[0, 0].long()
+                seen = image[0, :, at[:, 1], at[:, 0]]
+                kept = labels[0, 0] == 1.0
+                colour = seen[:, kept].mean(dim=1)
+                near = 0.2 - (image[0] - colour[:, None, None]).abs().max(dim=0).values
+                boxed = torch.full_like(near, -1.0)
+                corners = at[labels[0, 0] >= 2.0]
+                if corners.shape[0] == 2:
+                    x0, y0, x1, y1 = int(corners[0, 0]), int(corners[0, 1]), int(corners[1, 0]), int(corners[1, 1])
+                    boxed[y0 : y1 + 1, x0 : x1 + 1] = near[y0 : y1 + 1, x0 : x1 + 1]
+                    near = boxed
+                worse = torch.ones_like(near)
+                return torch.stack([worse, near])[None, None], torch.tensor([[[0.1, 0.9]]])
+
+        path = tmp_path / "network.pt"
+        torch.jit.script(AsThePoint()).save(str(path))
+        return str(path)
+
+    @pytest.fixture
+    def two(self):
+        rgb = np.full((120, 160, 3), 220, np.uint8)
+        rgb[30:90, 20:70] = rgb[30:90, 95:145] = (40, 60, 140)
+        return observed(rgb)
+
+    def test_points_and_boxes_say_which_thing_is_meant(self, weights, two):
+        pointed = segmenter("sam", weights=weights, points=[[0.3, 0.5], [0.2, 0.4]]).segment(two)
+        boxed = segmenter("sam", weights=weights, points=[[0.75, 0.5]], box=[0.55, 0.2, 0.95, 0.8]).segment(two)
+        assert pointed[60, 40]
+        expected = np.zeros((120, 160), bool)
+        expected[30:90, 95:145] = True
+        np.testing.assert_array_equal(boxed, expected)
+
+    def test_nothing_there_is_said(self, weights, two):
+        with pytest.raises(GroundingError, match="finds no cloth"):
+            segmenter("sam", weights=weights, points=[[0.3, 0.5]], box=[0.9, 0.9, 0.99, 0.99]).segment(two)
+
+    def test_a_network_of_another_interface_is_told_the_right_one(self, tmp_path, two):
+        import torch
+
+        torch.jit.script(torch.nn.Linear(2, 2)).save(str(tmp_path / "linear.pt"))
+        with pytest.raises(GroundingError, match=r"linear\.pt.*interface must be image"):
+            segmenter("sam", weights=str(tmp_path / "linear.pt")).segment(two)
+
+    def test_checkpoints_that_need_pickle_are_never_opened(self, tmp_path):
+        import pickle
+
+        import torch
+
+        class Trap:
+            def __reduce__(self):
+                return (pytest.fail, ("unpickled",))
+
+        torch.save({"weight": Trap()}, tmp_path / "checkpoint.pth")
+        (tmp_path / "bare.pkl").write_bytes(pickle.dumps(Trap()))
+        for name in ("checkpoint.pth", "bare.pkl", "absent.pt"):
+            with pytest.raises(GroundingError, match=rf"{name}.*(torch\.jit|TorchScript)"):
+                segmenter("sam", weights=str(tmp_path / name))
