@@ -91,6 +91,17 @@ class TestPhoto:
             "nothing sets the cloth apart" in doubt for doubt in segmenter("photo").doubts(observed(rgb), invented)
         )
 
+    def test_a_grey_yoke_that_was_lost_is_doubted(self):
+        rng = np.random.default_rng(0)
+        rgb = rng.normal((205, 205, 202), 4, (300, 400, 3))
+        rgb[70:110, 100:300], rgb[110:240, 100:300] = (120, 120, 119), (225, 90, 30)
+        mask = np.zeros((300, 400), bool)
+        mask[110:240, 100:300] = True
+        picture = observed(rgb.clip(0, 255).astype(np.uint8))
+        assert any("is it cloth?" in doubt for doubt in segmenter("photo").doubts(picture, mask))
+        mask[70:110, 100:300] = True
+        assert not any("is it cloth?" in doubt for doubt in segmenter("photo").doubts(picture, mask))
+
 
 class TestBackground:
     def test_a_hand_that_reaches_in_is_no_cloth(self, tmp_path):

@@ -54,7 +54,10 @@ SEEN = 0.8
 PART = 2 / 3
 """Another thing that is larger than this share of the largest makes it doubtful which is meant."""
 
-NOTHING = "no cloth stands out from the table; use a plain background of another colour, or give a box or a mask"
+NOTHING = (
+    "no cloth stands out from the table; crop the picture to the table around the cloth, use a plain background of "
+    "another colour, or give a box or a mask"
+)
 SEVERAL = (
     "there are several things on the table; take one away, crop the picture, use a plain background, or give a mask"
 )

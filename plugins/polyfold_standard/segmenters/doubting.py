@@ -8,7 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold_standard.segmenters.blobs import enlarged, grown, opened, rim, share_at_border, shrunk
-from polyfold_standard.segmenters.choosing import Candidate, outline_seen, reduced, slopes_of, smoothed
+from polyfold_standard.segmenters.choosing import (
+    LIGHTS,
+    Candidate,
+    outline_seen,
+    reduced,
+    slopes_of,
+    smoothed,
+)
 from polyfold_standard.segmenters.light import border_band, colours_of, unlike
 
 Mask = NDArray[np.bool_]
@@ -23,6 +30,16 @@ SPANNED = 0.9
 
 LIGHT_ALONE = 0.08
 """Of cloth, at most this share may have a colour that the table has in other light, without a doubt."""
+
+
+LEFT_OUT = 0.04
+"""Larger parts beside a mask, as a share of it, are worth a doubt ..."""
+
+UNLIKE = 2.0
+"""What differs by so much of the border's own noise may be cloth: a grey yoke beside a body of a strong colour."""
+
+SHARPLY = 0.3
+"""... if their edge is at least so steep, as a share of the mask's own."""
 
 
 def with_inlays(small: Picture, chosen: Candidate, found: Sequence[Candidate]) -> Mask:
@@ -72,7 +89,31 @@ def doubts_about(rgb: Picture, mask: Mask) -> tuple[str, ...]:
         found.append(
             f"{share:.0%} of the cloth has a colour of the table in other light; it may be a shadow or a sun spot"
         )
+    if (more := _left_out(small, less)) > LEFT_OUT:
+        found.append(
+            f"beside it {more:.0%} more end sharply and differ from the table only as in other light; is it cloth?"
+        )
     return tuple(found)
+
+
+def _left_out(small: Picture, mask: Mask) -> float:
+    """How large a part beside a mask is, as a share of it, that ends sharply but may be a shadow or a sun spot."""
+    import cv2
+
+    soft, slopes = smoothed(small), slopes_of(small)
+    band = border_band(small.shape[:2])
+    distance = unlike(soft, colours_of(soft[band]), LIGHTS[-1])
+    limit = UNLIKE * float(np.percentile(distance[band], 90))
+    added = opened((distance > limit) & ~grown(mask, 2), 3)
+    nearby, usual = cv2.dilate(slopes, np.ones((5, 5), np.uint8)), float(np.median(slopes[rim(mask)]))
+    count, labels = cv2.connectedComponents(added.astype(np.uint8))
+    largest = 0.0
+    for label in range(1, count):
+        part = np.asarray(labels == label)
+        new_edge = rim(part) & ~grown(mask, 5)
+        if (grown(part, 4) & mask).any() and new_edge.any() and np.median(nearby[new_edge]) > SHARPLY * usual:
+            largest = max(largest, float(part.sum() / mask.sum()))
+    return largest
 
 
 def _light_alone(small: Picture, mask: Mask) -> float:
