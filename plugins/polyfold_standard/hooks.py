@@ -46,7 +46,7 @@ def register_segmenters(register):
     register(
         "sam",
         "polyfold_standard.segmenters.promptable:PromptableSegmenter",
-        "a promptable network of your own, as a TorchScript file",
+        "a promptable network of your own, as an ONNX file",
     )
     register(
         "noisy", "polyfold_standard.noise:NoisySegmenter", "another segmenter whose edge wavers, tears or is coarse"

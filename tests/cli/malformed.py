@@ -279,7 +279,7 @@ def _sheets():
     for segmenter in (
         ("--segmenter", "background"),
         ("--segmenter", "background:nowhere.png"),
-        ("--segmenter", "sam:nowhere.pt"),
+        ("--segmenter", "sam:nowhere.onnx"),
         ("--segmenter", "grabcut", "--set", "segmenter.box=[10, 20, 300, 200]"),
         ("--segmenter", "grabcut", "--set", "segmenter.box=[0, 0, 1, 1]"),
         ("--segmenter", "grabbcut"),

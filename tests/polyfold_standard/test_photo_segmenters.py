@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from onnx_network import promptable
 from PIL import Image
 
 from experiments.benchmarks.segmentation.scenes import KINDS, drawn_scene
@@ -173,70 +174,49 @@ class TestGrabCut:
             segmenter("grabcut", box=[0, 0, 1, 1]).segment(observed(scene(FIRST).rgb))
 
 
-@pytest.mark.filterwarnings("ignore:.*torch.jit:DeprecationWarning")
 class TestPromptable:
-    """A real network, as TorchScript: it answers with what has the colour of the points on the cloth."""
+    """A real network: the best of its masks is what is dark and left of the farthest point or corner shown."""
 
     @pytest.fixture
     def weights(self, tmp_path):
-        import torch
-
-        class AsThePoint(torch.nn.Module):
-            def forward(self, image, points, labels):
-                at = points[0, 0].long()
-                seen = image[0, :, at[:, 1], at[:, 0]]
-                kept = labels[0, 0] == 1.0
-                colour = seen[:, kept].mean(dim=1)
-                near = 0.2 - (image[0] - colour[:, None, None]).abs().max(dim=0).values
-                boxed = torch.full_like(near, -1.0)
-                corners = at[labels[0, 0] >= 2.0]
-                if corners.shape[0] == 2:
-                    x0, y0, x1, y1 = int(corners[0, 0]), int(corners[0, 1]), int(corners[1, 0]), int(corners[1, 1])
-                    boxed[y0 : y1 + 1, x0 : x1 + 1] = near[y0 : y1 + 1, x0 : x1 + 1]
-                    near = boxed
-                worse = torch.ones_like(near)
-                return torch.stack([worse, near])[None, None], torch.tensor([[[0.1, 0.9]]])
-
-        path = tmp_path / "network.pt"
-        torch.jit.script(AsThePoint()).save(str(path))
-        return str(path)
+        (tmp_path / "network.onnx").write_bytes(promptable())
+        return str(tmp_path / "network.onnx")
 
     @pytest.fixture
     def two(self):
         rgb = np.full((120, 160, 3), 220, np.uint8)
-        rgb[30:90, 20:70] = rgb[30:90, 95:145] = (40, 60, 140)
+        rgb[30:90, 10:70] = rgb[40:80, 95:145] = (40, 60, 140)
         return observed(rgb)
 
-    def test_points_and_boxes_say_which_thing_is_meant(self, weights, two):
-        pointed = segmenter("sam", weights=weights, points=[[0.3, 0.5], [0.2, 0.4]]).segment(two)
-        boxed = segmenter("sam", weights=weights, points=[[0.75, 0.5]], box=[0.55, 0.2, 0.95, 0.8]).segment(two)
-        assert pointed[60, 40]
-        expected = np.zeros((120, 160), bool)
-        expected[30:90, 95:145] = True
-        np.testing.assert_array_equal(boxed, expected)
+    @staticmethod
+    def mask(rows, columns):
+        found = np.zeros((120, 160), bool)
+        found[rows, columns] = True
+        return found
+
+    def test_points_and_boxes_reach_the_network(self, weights, two):
+        whole, part = self.mask(slice(30, 90), slice(10, 70)), self.mask(slice(30, 90), slice(10, 40))
+        assert iou(segmenter("sam", weights=weights, box=[0.05, 0.2, 0.5, 0.8]).segment(two), whole) > 0.95
+        assert iou(segmenter("sam", weights=weights, points=[[0.25, 0.25]]).segment(two), part) > 0.9
+
+    def test_a_mask_that_holds_what_is_no_cloth_is_passed_over(self, two, tmp_path):
+        (tmp_path / "network.onnx").write_bytes(promptable(scores=(0.1, 0.9, 0.7)))
+        common = {"weights": str(tmp_path / "network.onnx"), "points": [[0.25, 0.25]]}
+        whole, part = self.mask(slice(30, 90), slice(10, 70)), self.mask(slice(30, 90), slice(10, 40))
+        assert iou(segmenter("sam", **common).segment(two), whole) > 0.95
+        assert iou(segmenter("sam", **common, no_cloth=[[0.75, 0.5]]).segment(two), part) > 0.9
 
     def test_nothing_there_is_said(self, weights, two):
         with pytest.raises(GroundingError, match="finds no cloth"):
-            segmenter("sam", weights=weights, points=[[0.3, 0.5]], box=[0.9, 0.9, 0.99, 0.99]).segment(two)
+            segmenter("sam", weights=weights, points=[[0.0, 0.03]]).segment(two)
 
-    def test_a_network_of_another_interface_is_told_the_right_one(self, tmp_path, two):
-        import torch
-
-        torch.jit.script(torch.nn.Linear(2, 2)).save(str(tmp_path / "linear.pt"))
-        with pytest.raises(GroundingError, match=r"linear\.pt.*interface must be image"):
-            segmenter("sam", weights=str(tmp_path / "linear.pt")).segment(two)
-
-    def test_checkpoints_that_need_pickle_are_never_opened(self, tmp_path):
-        import pickle
-
-        import torch
-
-        class Trap:
-            def __reduce__(self):
-                return (pytest.fail, ("unpickled",))
-
-        torch.save({"weight": Trap()}, tmp_path / "checkpoint.pth")
-        (tmp_path / "bare.pkl").write_bytes(pickle.dumps(Trap()))
-        for name in ("checkpoint.pth", "bare.pkl", "absent.pt"):
-            with pytest.raises(GroundingError, match=rf"{name}.*(torch\.jit|TorchScript)"):
+    def test_files_that_are_no_such_network_are_refused(self, tmp_path):
+        (tmp_path / "other.onnx").write_bytes(promptable(masks="logits"))
+        (tmp_path / "text.onnx").write_text("hello")
+        for name, says in (("other.onnx", "no output_masks"), ("text.onnx", "no ONNX"), ("absent.onnx", "no file")):
+            with pytest.raises(GroundingError, match=says):
                 segmenter("sam", weights=str(tmp_path / name))
+
+    def test_more_points_than_it_takes_are_refused(self, weights):
+        with pytest.raises(ConfigError, match="at most 4 points"):
+            segmenter("sam", weights=weights, points=[[0.5, 0.5]] * 5)

@@ -94,7 +94,7 @@ def _tile(rgb: NDArray[np.uint8], result: Measured) -> Image.Image:
     """A scene at half its size, with the outline and the IoU."""
     from scipy import ndimage
 
-    edge = ndimage.binary_dilation(result.mask, iterations=2) & ~result.mask
+    edge = np.asarray(ndimage.binary_dilation(result.mask, iterations=2), bool) & ~result.mask
     picture = rgb.copy()
     picture[edge] = (0, 220, 60) if result.iou >= GOOD else (255, 0, 200)
     tile = Image.fromarray(picture).resize((320, 240))
