@@ -24,16 +24,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, metavar="PNG", help="picture (default: SOURCE with -polygon.png)")
     parser.add_argument("--json", action="store_true", help="print the keypoints in the source's pixels as JSON")
     add_sheet_option(parser)
-    add_component_options(parser, ["segmenter", "grounding"], {"segmenter": SEGMENTER})
+    add_component_options(parser, ["grounding", "segmenter"], {"segmenter": SEGMENTER})
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Fit, draw and report."""
     from polyfold import viz
 
+    experiment = experiment_from(arguments)
     source = _source(arguments.source)
     segmenter = _segmenter(arguments) if "image" in source or arguments.segmenter else None
-    experiment = experiment_from(arguments)
     found = polyfold.ground(
         arguments.garment, **source, segmenter=segmenter, sheet=arguments.sheet, experiment=experiment
     )
