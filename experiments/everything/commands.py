@@ -79,6 +79,12 @@ COMMANDS = (
             ("fitting", "--creases", "--n", "20", "--first-seed", "0"),
         ),
     ),
+    CommandStep(
+        "segmentation",
+        0.3,
+        (("segmentation",), ("segmentation", "--data", "{data}", "--first-seed", "2000")),
+        headings=("Garments of the package's own kinds:", "Outlines of real t-shirts, towels and shorts:"),
+    ),
     CommandStep("coverage", 0.1, (("coverage",),)),
     CommandStep("tokens", 0.1, (("language.tokens",),)),
     CommandStep("folders", 0.2, (("folders",),)),

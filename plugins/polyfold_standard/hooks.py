@@ -1,4 +1,4 @@
-"""Registers the garments and fabrics, the colour segmenter, the agents and the standard tasks."""
+"""Registers the garments and fabrics, the segmenters, the agents and the standard tasks."""
 
 from polyfold.plugins.hookspecs import hookimpl
 
@@ -30,8 +30,24 @@ def register_simulators(register):
 
 @hookimpl
 def register_segmenters(register):
-    """Register the segmenter and the one that spoils masks."""
+    """Register the segmenters of plain and of photographed tables, and the one that spoils masks."""
     register("colour", "polyfold_standard.segmenter:ColourThreshold", "colour distance from the table")
+    register(
+        "photo",
+        "polyfold_standard.segmenters.photo:PhotoSegmenter",
+        "one garment on a plain, textured or shadowed table, the default for photos",
+    )
+    register(
+        "background",
+        "polyfold_standard.segmenters.background:BackgroundDifference",
+        "difference from a picture of the empty table",
+    )
+    register("grabcut", "polyfold_standard.segmenters.grabcut:GrabCut", "GrabCut from a box, strokes, or by itself")
+    register(
+        "sam",
+        "polyfold_standard.segmenters.promptable:PromptableSegmenter",
+        "a promptable network of your own, as an ONNX file",
+    )
     register(
         "noisy", "polyfold_standard.noise:NoisySegmenter", "another segmenter whose edge wavers, tears or is coarse"
     )

@@ -13,14 +13,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from polyfold import plugins
 from polyfold.api._doubts import DOUBTFUL, confidence, doubts
+from polyfold.api._photos import framed as framed_photo
+from polyfold.api._photos import look
 from polyfold.config import ComponentSpec, Experiment
 from polyfold.errors import GarmentError
 from polyfold.garments import Garment, Pattern
 from polyfold.garments._obj import load_obj
-from polyfold.garments._outline_files import load_mask, load_outline, load_picture, outline_from_photo
-from polyfold.garments._twin import twin_from_outline
+from polyfold.garments._outline_files import load_mask, load_outline, load_picture
+from polyfold.garments._twin import twin_from_outline, upright_size
 from polyfold.geometry import Camera, contour_of
 from polyfold.geometry._masks import fill_polygon
+from polyfold.geometry._rectified import Rectified
 from polyfold.plugins._fabrics import garment_template
 from polyfold.plugins.interfaces import SewnKind
 from polyfold.types import Observation, Scene
@@ -42,6 +45,8 @@ class Grounded:
         keypoints: vertex name -> position in the source's pixels, shape (2,).
         confidence: how sure it is that this is such a garment, 0 to 1; by the fit and by ``doubts``.
         doubts: what speaks against it, in words.
+        plane: how the photo's pixels map to metres on the table; None without a sheet or board beside the garment.
+        size: longest side of the garment's bounding box when it lies upright [m]; None without ``plane``.
     """
 
     scene: Scene
@@ -50,6 +55,8 @@ class Grounded:
     keypoints: Mapping[str, Floats]
     confidence: float = 1.0
     doubts: tuple[str, ...] = ()
+    plane: Rectified | None = None
+    size: float | None = None
 
     def _repr_png_(self) -> bytes:
         from polyfold import viz
@@ -70,6 +77,8 @@ def garment(
     size: float | None = None,
     edge_length: float | None = None,
     fabric: str | dict[str, Any] | ComponentSpec | None = None,
+    segmenter: str | dict[str, Any] | ComponentSpec | None = None,
+    sheet: str | None = None,
     experiment: Experiment | None = None,
 ) -> Garment:
     """A garment of a kind: seeded, from a mesh file, or the twin of a real one.
@@ -79,13 +88,17 @@ def garment(
         seed: picks the instance when nothing else is given.
         mask: PNG or bool array, shape (H, W), of a real garment.
         outline: JSON file or array of pixels, shape (N, 2), of a real garment.
-        image: photo of a real garment on a plain background.
+        image: photo of a real garment on a table.
         mesh: OBJ file; ``keypoints`` must be given too.
         keypoints: JSON file, keypoint name -> vertex index of the mesh.
         size: longest side of the real garment's bounding box [m]; by default typical of the kind.
         edge_length: mesh size [m]; by default what suits the kind.
         fabric: what it is made of: a name, or a table with ``name`` and constants (without a name, of the usual
             fabric); by default what the experiment names.
+        segmenter: what finds the cloth in the photo: a name, or a table with ``name`` and ``params``; by default
+            ``photo``.
+        sheet: what lies beside the garment in the photo and measures it: ``a3``, ``a4``, ``a5``, ``letter`` or
+            ``charuco:COLUMNSxROWS:SQUARE:MARKER`` with sides in mm. The photo may then be taken at an angle.
         experiment: whose grounding finds the keypoints of a real garment, and whose fabric it is made of: by default
             what its kind usually is.
 
@@ -106,13 +119,16 @@ def garment(
         raise GarmentError(f"give one source of the garment, not {' and '.join(given)}")
     if keypoints is not None and mesh is None:
         raise GarmentError("keypoints belong to a mesh file; give the mesh too")
+    _check_photo(image, segmenter, sheet)
     if not given:
         if size is not None:
             raise GarmentError("the size of a seeded garment comes from its seed; give a mask, outline, image or mesh")
         return plugins.generate_garment(kind, seed, edge_length, experiment.fabric)
     if mesh is not None:
         return replace(_from_mesh(kind, mesh, keypoints, size, edge_length), fabric=cloth)
-    found = ground(kind, mask=mask, outline=outline, image=image, experiment=experiment)
+    found = ground(
+        kind, mask=mask, outline=outline, image=image, segmenter=segmenter, sheet=sheet, experiment=experiment
+    )
     if found.confidence < DOUBTFUL:
         reasons = "; ".join(found.doubts) or f"the polygon is off by {found.scene.residual:.1f} px"
         warnings.warn(
@@ -120,7 +136,8 @@ def garment(
             "`polyfold ground` draws",
             stacklevel=2,
         )
-    twin = twin_from_outline(found.outline, kind, found.keypoints, pattern_of(kind), size, edge_length)
+    ring, corners = _on_table(found.plane, found.outline, found.keypoints)
+    twin = twin_from_outline(ring, kind, corners, pattern_of(kind), size or found.size, edge_length)
     return replace(twin, fabric=cloth)
 
 
@@ -146,6 +163,8 @@ def ground(
     mask: str | Path | ArrayLike | None = None,
     outline: str | Path | ArrayLike | None = None,
     image: str | Path | None = None,
+    segmenter: str | dict[str, Any] | ComponentSpec | None = None,
+    sheet: str | None = None,
     experiment: Experiment | None = None,
 ) -> Grounded:
     """Fit a kind's polygon model to a real garment.
@@ -153,17 +172,25 @@ def ground(
     Args: as in :func:`garment`; give exactly one of ``mask``, ``outline`` and ``image``.
 
     Raises:
-        GarmentError: if the source can't be used.
+        GarmentError: if the source can't be used, or no cloth or no sheet is found in the photo.
         GroundingError: if it can't be explained as this kind.
+        PluginError: if there is no such segmenter.
     """
-    silhouette, photo = outline_of(mask=mask, outline=outline, image=image)
+    _check_photo(image, segmenter, sheet)
+    photo = None if image is None else look(image, segmenter, sheet)
+    source = outline_of(mask=mask, outline=outline) if photo is None else photo.outline
+    plane = None if photo is None else photo.plane
+    silhouette = source if plane is None else plane.on_table(source)
     centre = (silhouette.min(axis=0) + silhouette.max(axis=0)) / 2
     scale = SPAN / float(np.ptp(silhouette, axis=0).max())
     camera = Camera()
     shift = np.asarray(camera.centre) - scale * centre
-    framed = scale * silhouette + shift
-    framed_mask = fill_polygon(framed, camera.height, camera.width)
-    rgb = _framed_photo(photo, scale, shift, camera) if photo is not None else _drawn(framed_mask)
+    framed_mask = fill_polygon(scale * silhouette + shift, camera.height, camera.width)
+
+    def to_frame(pixels: Floats) -> Floats:
+        return scale * (pixels if plane is None else plane.on_table(pixels)) + shift
+
+    rgb = _drawn(framed_mask) if photo is None else framed_photo(photo.rgb, to_frame, camera)
     depth = np.full(framed_mask.shape, camera.elevation, np.float32)
     grounding = plugins.create_chosen(experiment or Experiment(), "grounding")
     template = garment_template(kind)
@@ -176,28 +203,48 @@ def ground(
         return grounding.ground(seen, framed_mask, garment_template(other))
 
     vertices = scene.model.vertices()
-    keypoints = {name: (vertices[name].point - shift) / scale for name in template.names}
-    found = list(doubts(kind, scene, None if photo is None else rgb, ground_as))
+    placed = np.array([(vertices[name].point - shift) / scale for name in template.names])
+    size = _size(kind, silhouette, dict(zip(template.names, placed, strict=True))) if plane is not None else None
+    points = placed if plane is None else plane.in_photo(placed)
+    keypoints = dict(zip(template.names, points, strict=True))
+    found = [*doubts(kind, scene, None if photo is None else rgb, ground_as), *(photo.doubts if photo else ())]
     sure = confidence(scene.residual, found)
-    return Grounded(scene, rgb, silhouette, keypoints, sure, tuple(words for _, words in found))
+    return Grounded(scene, rgb, source, keypoints, sure, tuple(words for _, words in found), plane, size)
 
 
-def outline_of(
-    *,
-    mask: str | Path | ArrayLike | None = None,
-    outline: str | Path | ArrayLike | None = None,
-    image: str | Path | None = None,
-) -> tuple[Floats, NDArray[np.uint8] | None]:
-    """The silhouette [px], shape (N, 2), of a mask, outline or photo, and the photo itself if that was given."""
-    if image is not None:
-        return outline_from_photo(image), load_picture(image)
+def _check_photo(image: str | Path | None, segmenter: object, sheet: str | None) -> None:
+    if image is None and (segmenter is not None or sheet is not None):
+        what = "a sheet measures" if sheet is not None else "a segmenter searches"
+        raise GarmentError(f"{what} a photo; give one as image")
+
+
+def _on_table(
+    plane: Rectified | None, outline: Floats, keypoints: Mapping[str, Floats]
+) -> tuple[Floats, dict[str, Floats]]:
+    """Outline and keypoints as seen straight from above."""
+    if plane is None:
+        return outline, dict(keypoints)
+    points = plane.on_table(np.array(list(keypoints.values())))
+    return plane.on_table(outline), dict(zip(keypoints, points, strict=True))
+
+
+def _size(kind: str, outline: Floats, keypoints: Mapping[str, Floats]) -> float:
+    """Longest side of the upright garment [m]; as it lies, if its kind does not say which way up that is."""
+    cls = plugins.component_class("garments", kind)
+    if isinstance(cls, SewnKind):
+        return upright_size(outline, keypoints, cls.pattern)
+    return float(np.ptp(outline, axis=0).max())
+
+
+def outline_of(*, mask: str | Path | ArrayLike | None = None, outline: str | Path | ArrayLike | None = None) -> Floats:
+    """The silhouette [px], shape (N, 2), of a mask or outline."""
     if outline is not None:
         points: Any = load_outline(outline) if isinstance(outline, str | Path) else outline
-        return np.asarray(points, float), None
+        return np.asarray(points, float)
     if mask is None:
         raise GarmentError("give a mask, an outline or an image of the garment")
     pixels: Any = load_mask(mask) if isinstance(mask, str | Path) else mask
-    return contour_of(np.asarray(pixels, bool)), None
+    return contour_of(np.asarray(pixels, bool))
 
 
 def is_mask(path: str | Path) -> bool:
@@ -208,15 +255,6 @@ def is_mask(path: str | Path) -> bool:
     grey = ((pixels < 16) | (pixels > 239)).mean() > 0.99 and np.ptp(pixels.astype(int), axis=2).max() < 16
     border = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
     return bool(grey and (border > 127).mean() <= 0.5)
-
-
-def _framed_photo(photo: NDArray[np.uint8], scale: float, shift: Floats, camera: Camera) -> NDArray[np.uint8]:
-    import cv2
-
-    matrix = np.array([[scale, 0.0, shift[0]], [0.0, scale, shift[1]]])
-    flags = cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR
-    size = (camera.width, camera.height)
-    return np.asarray(cv2.warpAffine(photo, matrix, size, flags=flags, borderMode=cv2.BORDER_REPLICATE), np.uint8)
 
 
 def _drawn(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:

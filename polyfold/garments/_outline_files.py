@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polyfold.errors import GarmentError
+from polyfold.errors import GarmentError, GroundingError
 from polyfold.errors._hints import file_problem
 from polyfold.garments._silhouette import find_cloth
 from polyfold.garments._twin import repair_outline
@@ -85,8 +86,15 @@ def _decoded(path: Path, folder: Path, stamp: tuple[int, ...]) -> NDArray[np.uin
     return pixels
 
 
-def outline_from_photo(path: str | Path) -> NDArray[np.float64]:
-    """Outline of the garment in a photograph with a plain background [px of the photograph], shape (M, 2).
+def outline_from_photo(
+    path: str | Path, find: Callable[[NDArray[np.uint8]], NDArray[np.bool_]] = find_cloth
+) -> NDArray[np.float64]:
+    """Outline of the garment in a photograph [px of the photograph], shape (M, 2).
+
+    Args:
+        path: PNG or JPEG file.
+        find: finds the cloth in a picture of at most 1000 px, uint8, shape (H, W, 3): its mask, bool, shape (H, W). By
+            default on a plain background.
 
     Raises:
         GarmentError: if the file is no picture or no garment stands out from the background.
@@ -99,8 +107,8 @@ def outline_from_photo(path: str | Path) -> NDArray[np.float64]:
     size = (max(1, round(width * scale)), max(1, round(height * scale)))
     smaller = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), np.uint8) if scale < 1.0 else picture
     try:
-        outline = contour_of(find_cloth(smaller))
-    except GarmentError as error:
+        outline = contour_of(find(smaller))
+    except (GarmentError, GroundingError) as error:
         raise GarmentError(f"{path}: {error}") from error
     factor = np.array([width / size[0], height / size[1]])
     return (outline + 0.5) * factor - 0.5

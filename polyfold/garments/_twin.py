@@ -72,6 +72,15 @@ def twin_from_outline(
     return Garment(kind, name or f"{kind}-twin", None, mesh, vertices, cyclic=pattern.cyclic)
 
 
+def upright_size(outline: ArrayLike, keypoints: Mapping[str, ArrayLike], pattern: Pattern) -> float:
+    """The longest side of an upright garment's bounding box, in the unit of its outline; as in twin_from_outline."""
+    flip = np.array([1.0, -1.0])
+    ring = repair_outline(np.asarray(outline, float) * flip)
+    upright, _ = _upright(ring, _complete(keypoints, pattern) * flip, pattern, 1.0)
+    # A turn keeps areas, so that they tell what scaled the ring to a side of 1.
+    return float(np.sqrt(abs(polygon_area(ring) / polygon_area(upright))))
+
+
 def repair_outline(outline: ArrayLike) -> Floats:
     """The outline without self-intersections, clockwise seen with y up, shape (K, 2).
 

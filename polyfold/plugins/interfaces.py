@@ -119,7 +119,11 @@ class HasReferenceConfig(Protocol):
 
 @runtime_checkable
 class Segmenter(Protocol):
-    """Finds the cloth in a picture."""
+    """Finds the cloth in a picture.
+
+    With a method ``doubts(observation, mask)`` it says what speaks against a mask, one line each; ``polyfold.ground``
+    mentions them and is less sure.
+    """
 
     def segment(self, observation: Observation) -> NDArray[np.bool_]:
         """Mask of the cloth, bool, shape (H, W). Raises GroundingError when there is none."""

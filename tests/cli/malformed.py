@@ -270,6 +270,23 @@ def _pictures():
         yield Case("photo", content, command, about, "file.png")
 
 
+def _sheets():
+    shirt = Image.new("RGB", (300, 200), (150, 115, 80))
+    shirt.paste((60, 80, 150), (80, 40, 220, 160))
+    command = ("ground", FILE, "--garment", "square", "--out", "DIR/p.png")
+    for sheet in ("a4", "a6", "charuco", "charuco:7x5:30:40", "charuco:7x5:40:30", "charuco:7x5:40:30:DICT_9X9"):
+        yield Case("photo", shirt, (*command, "--sheet", sheet), "no sheet beside it", "file.png")
+    for segmenter in (
+        ("--segmenter", "background"),
+        ("--segmenter", "background:nowhere.png"),
+        ("--segmenter", "sam:nowhere.onnx"),
+        ("--segmenter", "grabcut", "--set", "segmenter.box=[10, 20, 300, 200]"),
+        ("--segmenter", "grabcut", "--set", "segmenter.box=[0, 0, 1, 1]"),
+        ("--segmenter", "grabbcut"),
+    ):
+        yield Case("photo", shirt, (*command, *segmenter), "a shirt on a table", "file.png")
+
+
 def _cassettes():
     for content in (
         "[]\n",
@@ -370,7 +387,8 @@ def _options():
 def cases():
     """All of them."""
     makers = (
-        _experiments, _studies, _suites, _meshes, _outlines, _pictures, _cassettes, _weights, _data, _runs, _options
+        _experiments, _studies, _suites, _meshes, _outlines, _pictures, _sheets, _cassettes, _weights, _data, _runs,
+        _options,
     )  # fmt: skip
     return [case for maker in makers for case in maker()]
 

@@ -40,4 +40,4 @@ def test_a_wrong_value_is_named(polyfold, assignment, says):
 def test_a_verb_takes_parameters_of_the_components_that_it_uses_and_of_no_others(polyfold):
     result = polyfold("ground", "shirt.png", "--garment", "tshirt", "--set", "fabric.thickness=0.002")
     assert result.status == 1
-    assert "with KIND one of grounding; for example --set grounding.PARAM=VALUE" in result.err
+    assert "with KIND one of grounding, segmenter; for example --set grounding.PARAM=VALUE" in result.err

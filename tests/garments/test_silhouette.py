@@ -252,10 +252,11 @@ def test_a_photo_of_many_megapixels_is_decoded_once_and_warns_of_nothing(tmp_pat
     Image.fromarray(picture).save(tmp_path / "photo.png")
     opened, was = [], Image.open
     monkeypatch.setattr(Image, "open", lambda path: opened.append(path) or was(path))
-    from polyfold.api._loaders import is_mask, outline_of
+    from polyfold.api._loaders import is_mask
+    from polyfold.api._photos import look
 
     assert not is_mask(tmp_path / "photo.png")
-    outline, photo = outline_of(image=tmp_path / "photo.png")
+    seen = look(tmp_path / "photo.png", None, None)
     assert (len(opened), len(recwarn)) == (1, 0)
-    assert (photo == picture).all()
-    assert iou(fill_polygon(outline, 400, 400), shape_mask()) > 0.98
+    assert (seen.rgb == picture).all()
+    assert iou(fill_polygon(seen.outline, 400, 400), shape_mask()) > 0.98

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
 from polyfold.config import USUAL, ComponentSpec, Experiment, load_experiment
@@ -16,11 +16,19 @@ MEANING = {USUAL: ", what the kind of garment is usually made of (see: polyfold 
 GUIDANCE = get_args(Experiment.model_fields["guidance"].annotation)
 
 
-def add_component_options(parser: argparse.ArgumentParser, kinds: Sequence[str] = KINDS) -> None:
-    """Add one option per kind of component that the verb uses, the config file and single parameters."""
+def add_component_options(
+    parser: argparse.ArgumentParser, kinds: Sequence[str] = KINDS, defaults: Mapping[str, str] | None = None
+) -> None:
+    """Add one option per kind of component that the verb uses, the config file and single parameters.
+
+    Args:
+        parser: of the verb.
+        kinds: of component, singular.
+        defaults: kind -> name of what the verb uses by default, where that is not what experiments do.
+    """
     group = parser.add_argument_group("components (see: polyfold plugins)")
     for kind in kinds:
-        default = getattr(Experiment(), kind).name
+        default: str = (defaults or {}).get(kind) or getattr(Experiment(), kind).name
         default += MEANING.get(default, "")
         group.add_argument(f"--{kind}", metavar="NAME[:ARG]", help=f"default: {default}")
     if "agent" in kinds:
@@ -62,6 +70,12 @@ def _parse(assignment: str, kinds: Sequence[str]) -> tuple[str, str, Any]:
             f"for example --set {_example(kinds)}"
         )
     return kind, param, _value(text)
+
+
+def component(text: str) -> str | dict[str, Any]:
+    """What a component is written as: ``NAME``, ``NAME:ARG`` or a table with ``name`` and ``params``."""
+    value = _value(text) if text.lstrip().startswith("{") else text
+    return value if isinstance(value, dict) else text
 
 
 def _value(text: str) -> Any:

@@ -6,6 +6,9 @@ import argparse
 from pathlib import Path
 
 import polyfold
+from polyfold.api._photos import SEGMENTER
+from polyfold.cli._options.components import component
+from polyfold.geometry._rectified import SHEETS
 
 
 def add_source_options(parser: argparse.ArgumentParser) -> None:
@@ -17,10 +20,27 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     source = twin.add_mutually_exclusive_group()
     source.add_argument("--mask", type=Path, metavar="PNG", help="mask of the garment: a simulated twin is built")
     source.add_argument("--outline", type=Path, metavar="JSON", help="outline of the garment [[x, y], ...] in pixels")
-    source.add_argument("--image", type=Path, metavar="PHOTO", help="photo of the garment on a plain background")
+    source.add_argument("--image", type=Path, metavar="PHOTO", help="photo of the garment on a table")
     source.add_argument("--mesh", type=Path, metavar="OBJ", help="triangle mesh; give --keypoints too")
+    twin.add_argument(
+        "--photo-segmenter",
+        type=component,
+        metavar="NAME[:ARG]",
+        help=f"what finds the cloth in PHOTO, or {{name = ..., params = {{...}}}} (default: {SEGMENTER})",
+    )
+    add_sheet_option(twin)
     twin.add_argument("--keypoints", type=Path, metavar="JSON", help="keypoint name -> vertex index of the mesh")
     twin.add_argument("--size", type="metres", metavar="METRES", help="longest side of the real garment's bounding box")
+
+
+def add_sheet_option(parser: argparse._ActionsContainer) -> None:
+    """Add ``--sheet``."""
+    parser.add_argument(
+        "--sheet",
+        metavar="SHEET",
+        help=f"what lies beside the garment in the photo and measures it: {', '.join(SHEETS)}, or a ChArUco board as "
+        "charuco:COLUMNSxROWS:SQUARE:MARKER [mm]; the photo may then be taken at an angle",
+    )
 
 
 def garment_from(arguments: argparse.Namespace, experiment: polyfold.Experiment) -> polyfold.Garment:
@@ -35,5 +55,7 @@ def garment_from(arguments: argparse.Namespace, experiment: polyfold.Experiment)
         keypoints=arguments.keypoints,
         size=arguments.size,
         edge_length=arguments.edge_length,
+        segmenter=arguments.photo_segmenter,
+        sheet=arguments.sheet,
         experiment=experiment,
     )

@@ -1,0 +1,1 @@
+"""How well cloth is told from the table on photographs; ``python -m experiments.benchmarks.segmentation``."""

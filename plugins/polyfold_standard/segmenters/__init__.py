@@ -1,0 +1,1 @@
+"""Segmenters for photographs: textured or shadowed tables, a picture of the empty one, boxes, strokes and prompts."""
