@@ -7,7 +7,6 @@ import sys
 from collections.abc import Sequence
 
 from PIL import Image
-
 from polyfold_pybullet.cell import Cell
 from polyfold_pybullet.planning import FoldPlanner, Infeasible
 from polyfold_pybullet.robots import robot_model

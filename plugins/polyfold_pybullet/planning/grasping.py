@@ -103,3 +103,16 @@ def carried(pick: Floats, place: Floats, yaws: tuple[float, float], hover: float
         arc.append(top_down(position, yaws[0] + share * (yaws[1] - yaws[0])))
     away = [top_down(place + share * up, yaws[1]) for share in np.linspace(0, 1, rows)]
     return np.array([*down, *arc, *away])
+
+
+def straight(start: Floats, end: Floats, step: float = 0.02) -> Floats:
+    """Poses on the straight line from one to another, turning evenly, at most about ``step`` [m] apart, (T, 4, 4)."""
+    from scipy.spatial.transform import Rotation, Slerp
+
+    turns = Rotation.from_matrix(np.stack([start[:3, :3], end[:3, :3]]))
+    way = float(np.linalg.norm(end[:3, 3] - start[:3, 3])) + 0.1 * float((turns[0].inv() * turns[1]).magnitude())
+    shares = np.linspace(0, 1, max(2, int(np.ceil(way / step)) + 1))
+    poses = np.tile(np.eye(4), (len(shares), 1, 1))
+    poses[:, :3, :3] = Slerp([0, 1], turns)(shares).as_matrix()
+    poses[:, :3, 3] = start[:3, 3] + shares[:, None] * (end - start)[:3, 3]
+    return poses

@@ -1,4 +1,4 @@
-"""What planning ends in: a plan of timed motions of both arms, or the reason why there is none."""
+"""What planning ends in: timed motions of both arms."""
 
 from __future__ import annotations
 
@@ -65,16 +65,3 @@ class FoldPlan:
         hands = [motion.closed for motion in self.motions]
         changes = sum(one != other for one, other in pairwise(hands))
         return sum(motion.duration for motion in self.motions) + self.settling * changes
-
-
-@dataclass(frozen=True)
-class Infeasible:
-    """A fold that the arms can't do as they stand.
-
-    Attributes:
-        reason: one line, of the attempt that came farthest.
-        stage: how far that was: ``reach``, ``carry``, ``together`` or ``transit``.
-    """
-
-    reason: str
-    stage: Literal["reach", "carry", "together", "transit"]
