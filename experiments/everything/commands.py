@@ -79,6 +79,7 @@ COMMANDS = (
             ("fitting", "--creases", "--n", "20", "--first-seed", "0"),
         ),
     ),
+    CommandStep("cell", 0.3, (("cell.reach", "--robots", "panda"), ("cell.folds",))),
     CommandStep("coverage", 0.1, (("coverage",),)),
     CommandStep("tokens", 0.1, (("language.tokens",),)),
     CommandStep("folders", 0.2, (("folders",),)),

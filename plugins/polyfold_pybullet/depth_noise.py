@@ -68,13 +68,13 @@ class NoisyDepth:
         Returns:
             Distance [m], NaN where none was measured, shape (H, W).
         """
-        depth = np.asarray(depth, np.float64)
-        seen = np.isfinite(depth) & (depth > 0)
+        true = np.asarray(depth, np.float64)
+        seen = np.isfinite(true) & (true > 0)
         total = np.zeros(self._shape)
         for _ in range(frames):
-            total += self._once(np.where(seen, depth, 1.0))
+            total += self._once(np.where(seen, true, 1.0))
         measured = total / frames + self._noise.bias * self._plane
-        measured[~seen | self._edges(depth, seen)] = np.nan
+        measured[~seen | self._edges(true, seen)] = np.nan
         return measured.astype(np.float32)
 
     def _once(self, depth: Floats) -> Floats:

@@ -1,7 +1,7 @@
 """A plan looked at again, five times as densely as it was planned, by a cell of its own.
 
 Every pair that could touch is measured at every row: the links of one arm with all of the other, with themselves,
-table, torso and posts, in whole-body queries that share no shortcut with the planner's.
+table, torso and posts, without the planner's shortcuts.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from polyfold_pybullet.cell import Cell
+from polyfold_pybullet.cell import TABLE, TORSO, Cell
 from polyfold_pybullet.planning import FoldPlan, Motion
 from polyfold_pybullet.planning.carrying import STEP
 
@@ -75,8 +75,9 @@ def _dense(motion: Motion) -> Iterator[tuple[Floats, Floats]]:
 def _distances(cell: Cell, pybullet: Any) -> Iterator[tuple[str, float]]:
     """What is near what in the cell as it stands, and how near [m]."""
 
-    def measured(one: int, other: int, within: float = WITHIN) -> Any:
-        return pybullet.getClosestPoints(one, other, within, physicsClientId=cell.client) or ()
+    def measured(one: int, other: int, within: float = WITHIN, link: int = -2) -> Any:
+        chosen = {} if link == -2 else {"linkIndexA": link}
+        return pybullet.getClosestPoints(one, other, within, **chosen, physicsClientId=cell.client) or ()
 
     left, right = cell.arms
     yield from (("arms", near[8]) for near in measured(left.number, right.number))
@@ -86,8 +87,8 @@ def _distances(cell: Cell, pybullet: Any) -> Iterator[tuple[str, float]]:
             if (near[3], near[4]) in allowed or (near[4], near[3]) in allowed:
                 yield "itself", near[8]
         for name, number in cell.obstacles(arm):
-            for near in measured(body.number, number):
-                link = near[3]
-                if link == -1 or (name == "the torso" and link <= body.joints[0]):
-                    continue
-                yield ("tips" if name == "the table" and link in body.tips else name), near[8]
+            # An arm's base stands where it stands, and its first link hangs on the torso.
+            first = body.joints[0] if name == TORSO else -1
+            for link in (link for link in body.links if link > first):
+                for near in measured(body.number, number, link=link):
+                    yield ("tips" if name == TABLE and link in body.tips else name), near[8]
