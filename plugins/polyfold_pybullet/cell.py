@@ -147,24 +147,29 @@ class Cell:
         for joint in body.fingers:
             self._bullet.resetJointState(body.number, joint, width, physicsClientId=self.client)
 
-    def obstacles(self, arm: int) -> list[tuple[str, int]]:
-        """What stands in an arm's way, as names and PyBullet's numbers: all that does not move, but its own post."""
-        own = _post_of(self.model.arms[arm])
-        return [(what, body.number) for what, body in self._obstacles if what != own]
+    def obstacles(self, arm: int) -> list[tuple[str, int, list[int]]]:
+        """What stands in an arm's way, as names, PyBullet's numbers, and the arm's links that it may not be near to.
+
+        An arm's base stands where it stands; its first link hangs on the torso, and its first two turn over its post.
+        """
+        body = self.arms[arm]
+        last = {TORSO: body.joints[0], _post_of(self.model.arms[arm]): body.joints[min(1, len(body.joints) - 1)]}
+        return [
+            (what, other.number, [link for link in body.links if link > last.get(what, -1)])
+            for what, other in self._obstacles
+        ]
 
     def near_obstacles(self, arm: int, joints: ArrayLike) -> Near | None:
         """What an arm at joint angles, shape (N,), is too near to, itself included; None if nothing."""
         self.set_arm(arm, joints)
         body, limits = self.arms[arm], self.clearances
-        for what, obstacle in self._obstacles:
-            if what == _post_of(self.model.arms[arm]):  # it stands on it
-                continue
-            for link, distance in self._links_near(body, obstacle, what == TORSO):
+        for what, number, links in self.obstacles(arm):
+            for link, distance in self._links_near(body, number, links, what == TORSO):
                 allowed = limits.hands if what == TABLE and link in body.tips else limits.obstacles
                 if distance < allowed:
                     return Near(self._name(arm, link), what, distance)
         for one, other in body.pairs:
-            for _, _, distance in self._closest(body, body, limits.itself, one, other):
+            for _, _, distance in self._closest(body.number, body.number, limits.itself, one, other):
                 if distance < limits.itself:
                     return Near(self._name(arm, one), self._name(arm, other), distance)
         return None
@@ -173,7 +178,7 @@ class Cell:
         """Which parts of the arms are too near to each other at joint angles, shape (N,) each; None if none."""
         self.set_arm(0, left)
         self.set_arm(1, right)
-        found = list(self._closest(self.arms[0], self.arms[1], self.clearances.arms))
+        found = list(self._closest(self.arms[0].number, self.arms[1].number, self.clearances.arms))
         if not found:
             return None
         one, other, distance = min(found, key=lambda near: near[2])
@@ -207,29 +212,27 @@ class Cell:
         return np.ascontiguousarray(np.reshape(pixels, (height, width, 4))[:, :, :3], np.uint8)
 
     def _closest(
-        self, one: _Body, other: _Body, within: float, link: int | None = None, other_link: int | None = None
+        self, one: int, other: int, within: float, link: int | None = None, other_link: int | None = None
     ) -> Iterable[tuple[int, int, float]]:
-        """Pairs of links that are nearer than ``within``: their indices, and the distance between them [m]."""
+        """Pairs of links of two bodies nearer than ``within``: their indices, and the distance between them [m]."""
         chosen = {} if link is None else {"linkIndexA": link, "linkIndexB": other_link}
-        found = self._bullet.getClosestPoints(one.number, other.number, within, **chosen, physicsClientId=self.client)
+        found = self._bullet.getClosestPoints(one, other, within, **chosen, physicsClientId=self.client)
         return ((near[3], near[4], near[8]) for near in found or ())
 
-    def _links_near(self, body: _Body, obstacle: _Body, torso: bool) -> Iterator[tuple[int, float]]:
-        """Links of an arm that are near an obstacle, and how near [m]; not its base, which stands where it stands.
+    def _links_near(self, body: _Body, number: int, links: Sequence[int], torso: bool) -> Iterator[tuple[int, float]]:
+        """Links of an arm, of those that count, that are near an obstacle, and how near [m].
 
-        Its first link hangs on the torso; to measure that takes longer than all others.
+        A torso is no convex body, so that measuring takes long; it is done link by link and only for those about it.
         """
         within = max(self.clearances.obstacles, self.clearances.hands)
         if not torso:
-            yield from ((link, far) for link, _, far in self._closest(body, obstacle, within) if link != -1)
+            yield from ((link, far) for link, _, far in self._closest(body.number, number, within) if link in links)
             return
         for other, low, high in self._bounds:
-            for link in body.links:
-                if link <= body.joints[0]:
-                    continue
+            for link in links:
                 least, most = self._bullet.getAABB(body.number, link, physicsClientId=self.client)
                 if all(least[k] < high[k] + within and low[k] - within < most[k] for k in range(3)):
-                    yield from ((link, far) for _, _, far in self._closest(body, obstacle, within, link, other))
+                    yield from ((link, far) for _, _, far in self._closest(body.number, number, within, link, other))
 
     def _name(self, arm: int, link: int) -> str:
         return f"the {self.model.arms[arm].name} arm's {self.arms[arm].links.get(link, 'base')}"
@@ -302,7 +305,7 @@ class Cell:
             for earlier in range(-1, later - 2):
                 other = -1 if earlier < 0 else order[earlier]
                 both_behind = other >= body.joints[-1]
-                if not both_behind and not list(self._closest(body, body, 0.01, other, link)):
+                if not both_behind and not list(self._closest(body.number, body.number, 0.01, other, link)):
                     pairs.append((other, link))
         return _Body(body.number, body.links, body.joints, body.fingers, body.tips, tuple(pairs))
 

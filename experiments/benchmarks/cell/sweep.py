@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from polyfold_pybullet.cell import TABLE, TORSO, Cell
+from polyfold_pybullet.cell import TABLE, Cell
 from polyfold_pybullet.planning import FoldPlan, Motion
 from polyfold_pybullet.planning.carrying import STEP
 
@@ -86,9 +86,7 @@ def _distances(cell: Cell, pybullet: Any) -> Iterator[tuple[str, float]]:
         for near in measured(body.number, body.number, 0.0):
             if (near[3], near[4]) in allowed or (near[4], near[3]) in allowed:
                 yield "itself", near[8]
-        for name, number in cell.obstacles(arm):
-            # An arm's base stands where it stands, and its first link hangs on the torso.
-            first = body.joints[0] if name == TORSO else -1
-            for link in (link for link in body.links if link > first):
+        for name, number, links in cell.obstacles(arm):
+            for link in links:
                 for near in measured(body.number, number, link=link):
                     yield ("tips" if name == TABLE and link in body.tips else name), near[8]

@@ -47,7 +47,7 @@ class Failure:
 
     def note(self, stage: int, why: str) -> None:
         """Keep this if nothing came as far."""
-        if stage > self.stage:
+        if why and stage > self.stage:
             self.stage, self.why = stage, why
 
     def infeasible(self) -> Infeasible:
