@@ -90,6 +90,13 @@ def test_a_broken_urdf_is_refused(crane, tmp_path):
         read_chain(crane(urdf=str(broken)))
 
 
+def test_a_limit_that_is_no_number_is_named(crane, tmp_path):
+    odd = tmp_path / "odd.urdf"
+    odd.write_text(URDF.replace('upper="0.4"', 'upper="wide"'))
+    with pytest.raises(ConfigError, match="upper='wide' of the joint 'trolley' is no number; correct the URDF"):
+        read_chain(crane(urdf=str(odd)))
+
+
 def test_pandas_stand_side_by_side_and_mirror_each_other():
     left, right = panda().arms
     assert left.base_position[0] == -right.base_position[0] < 0

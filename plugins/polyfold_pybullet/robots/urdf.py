@@ -6,7 +6,6 @@ import math
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -186,7 +185,12 @@ def _limits(joint: Element) -> tuple[float, float, float]:
     hard, soft = joint.find("limit"), joint.find("safety_controller")
 
     def value(element: Element | None, name: str, otherwise: float) -> float:
-        return otherwise if element is None else float(element.get(name, otherwise))
+        given = otherwise if element is None else element.get(name, otherwise)
+        try:
+            return float(given)
+        except ValueError:
+            named = joint.get("name")
+            raise ConfigError(f"{name}={given!r} of the joint {named!r} is no number; correct the URDF") from None
 
     turns = joint.get("type") == "continuous"
     low = -2 * math.pi if turns else value(hard, "lower", 0.0)
@@ -198,7 +202,6 @@ def _limits(joint: Element) -> tuple[float, float, float]:
     )
 
 
-@lru_cache(maxsize=8)
 def _parsed(path: str) -> Element:
     try:
         return ElementTree.parse(path).getroot()
@@ -234,12 +237,13 @@ def written_part(arms: Iterable[Arm], which: str | None, into: Path) -> Path:
         chosen = next(arm for arm in arms if arm.name == which)
         dropped = set(joints) - parts[which] - {str(joint.get("name")) for joint in _joints_to(robot, chosen)}
     gone = {_child(joints[name]) for name in dropped}
+    folder = Path(arms[0].urdf).resolve().parent
     root = ElementTree.Element("robot", {"name": f"{robot.get('name')}-{which or 'torso'}"})
     of_arm = None if which is None else {_child(joints[name]) for name in parts[which]}
     for link in robot.findall("link"):
         if link.get("name") not in gone:
             bare = of_arm is not None and link.get("name") not in of_arm
-            root.append(_link(link, bare, which is None, Path(arms[0].package or Path(arms[0].urdf).parent)))
+            root.append(_link(link, bare, which is None, Path(arms[0].package or folder), folder))
     root.extend(joint for name, joint in joints.items() if name not in dropped)
     path = into / f"{root.get('name')}.urdf"
     ElementTree.ElementTree(root).write(path)
@@ -259,7 +263,7 @@ def _hanging_on(joints: dict[str, Element], arm: Arm) -> set[str]:
     return found
 
 
-def _link(link: Element, bare: bool, solid: bool, package: Path) -> Element:
+def _link(link: Element, bare: bool, solid: bool, package: Path, folder: Path) -> Element:
     """A copy of a link with absolute paths of meshes; a bare one without any geometry.
 
     What has no mass gets one, which PyBullet asks for and a cell without dynamics does not use.
@@ -277,6 +281,8 @@ def _link(link: Element, bare: bool, solid: bool, package: Path) -> Element:
             shape.set("concave", "yes")
     for mesh in copy.iter("mesh"):
         name = str(mesh.get("filename"))
-        if name.startswith("package://"):
-            mesh.set("filename", str(package / name.removeprefix("package://")))
+        # A path that is absolute already stays so.
+        mesh.set(
+            "filename", str((package if name.startswith("package://") else folder) / name.removeprefix("package://"))
+        )
     return copy
