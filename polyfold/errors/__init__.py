@@ -12,6 +12,7 @@ from polyfold.errors._types import (
     PluginError,
     PolyfoldError,
     RefusedError,
+    RobotError,
     SimulationError,
 )
 
@@ -26,6 +27,7 @@ __all__ = [
     "PluginError",
     "PolyfoldError",
     "RefusedError",
+    "RobotError",
     "SimulationError",
     "did_you_mean",
     "validation_problem",

@@ -43,5 +43,9 @@ class ActionError(PolyfoldError):
     """An action has a wrong shape, is not finite, or lies outside the image."""
 
 
+class RobotError(PolyfoldError):
+    """A robot or camera is not connected, was stopped, or can't do what it was told."""
+
+
 class SimulationError(PolyfoldError):
     """The simulation diverged; the message carries what reproduces the episode."""

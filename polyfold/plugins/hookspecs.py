@@ -20,7 +20,8 @@ Each ``register_*`` hook gets a function ``register(name, target, summary="", ne
 * ``needs``: distributions to install before the component can be used, as pip names them; a missing one is answered
   with the pip command.
 
-What the class must do stands in :mod:`polyfold.plugins.interfaces`. The ``on_*`` hooks observe: what they return is
+What the class must do stands in :mod:`polyfold.plugins.interfaces`, for cameras and robots in
+:mod:`polyfold.plugins.hardware`. The ``on_*`` hooks observe: what they return is
 ignored, and an error in one is recorded against its plugin without disturbing the run. A hook may take fewer arguments
 than its specification has. No hook sits in the data path.
 """
@@ -45,6 +46,8 @@ hookimpl = pluggy.HookimplMarker("polyfold")
 
 KINDS = (
     "simulators",
+    "cameras",
+    "robots",
     "segmenters",
     "groundings",
     "planners",
@@ -75,6 +78,19 @@ def plural(field: str) -> str:
 @hookspec
 def register_simulators(register: Register) -> None:
     """Register simulators: :class:`polyfold.plugins.interfaces.Simulator`, cloth on a table under a camera."""
+
+
+@hookspec
+def register_cameras(register: Register) -> None:
+    """Register cameras: :class:`polyfold.plugins.hardware.DepthCamera`, what measures colour and depth."""
+
+
+@hookspec
+def register_robots(register: Register) -> None:
+    """Register robots: :class:`polyfold.plugins.hardware.Robot`, arms that carry out picks and places.
+
+    Constructing one must not move it, nor open a connection.
+    """
 
 
 @hookspec

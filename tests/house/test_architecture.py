@@ -19,7 +19,7 @@ BUNDLED = sorted(folder.name for folder in (ROOT / "plugins").glob("polyfold_*")
 
 LARGEST_MODULE = 15_000  # bytes
 MOST_MODULES_OF_A_PACKAGE = 12
-MOST_PUBLIC_NAMES = 176
+MOST_PUBLIC_NAMES = 183
 
 
 def name_of(path):

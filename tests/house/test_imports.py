@@ -26,7 +26,8 @@ def test_light_paths_load_nothing_heavy(code):
 def test_reading_parameters_of_components_loads_nothing_heavy():
     code = (
         "from polyfold import plugins; plugins.refresh(third_party=False)\n"
-        "for kind in 'simulators segmenters groundings planners policies llms agents garments fabrics'.split():\n"
+        "for kind in ('simulators cameras robots segmenters groundings planners policies llms agents garments '\n"
+        "             'fabrics').split():\n"
         "    for name in plugins.names(kind):\n"
         "        getattr(plugins.component_class(kind, name), 'Config', None)\n"
     )

@@ -1,0 +1,1 @@
+"""Compiled kinematics. All kernels stand in one module: numba recompiles a module's functions when its file changes."""
