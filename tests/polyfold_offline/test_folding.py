@@ -173,3 +173,24 @@ def test_every_meaning_allows_the_folds_that_are_made_of_it(kind):
                 assert allowance(example.program, (10, 8, 6, 4), garment(kind), folds) == 1.0, example.program
                 made += 1
     assert made > 40
+
+
+def test_a_share_that_has_no_name_is_so_much_of_the_side_and_asks_for_centimetres_where_that_is_unknown():
+    program, _ = parse_program("strip R 5cm")
+    known = Garment("rectangle", "rectangle", {}, (50.0, 70.0))
+    (fold,) = folds_of(program, [Fraction(1, 10)], known).folds
+    assert (fold.part, fold.cm) == ("right", 5.0)
+    (fold,) = folds_of(parse_program("strip T 5cm")[0], [Fraction(1, 10)], known).folds
+    assert (fold.part, fold.cm) == ("top", 7.0)
+    with pytest.raises(NotUnderstoodError, match="1/10 of it is; say it in centimetres"):
+        folds_of(program, [Fraction(1, 10)], Garment("rectangle", "rectangle"))
+
+
+@pytest.mark.parametrize("kind", ["square", "rectangle", "tshirt", "pants"])
+@pytest.mark.parametrize("edge", ["L", "R", "T", "B"])
+def test_a_half_that_is_halved_again_the_same_way_is_said_in_other_words_than_the_first(kind, edge):
+    first, second = folds_of(parse_program(f"half {edge}; half {edge}")[0], (), garment(kind)).folds
+    assert first.part == second.part
+    said = [say(fold, kind) for fold in (first, second)]
+    assert said[0] != said[1]
+    assert [fold_of_subgoal(text, garment(kind)) for text in said] == [first, second]
