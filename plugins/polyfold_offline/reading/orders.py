@@ -52,12 +52,48 @@ _STRIP = re.compile(r"fold the (?P<edge>left|right|top|bottom) strip of (?P<cm>\
 def program_of_shortest_order(sentence: str, garment: Garment) -> Program | None:
     """The program of an order that only names the garment, *fold the shirt*, *fold it in half twice*; None of others.
 
-    They hold too few words for a network to be sure of any: one name of a garment more or less decides.
+    So is one that only names a part and where it goes, *fold the bottom up*, *fold the left sleeve*. They hold too few
+    words for a network to be sure of any: one name of a garment more or less decides.
     """
-    order = _SHORTEST.fullmatch(" ".join(sentence.split()))
+    words = " ".join(sentence.split())
+    order = _SHORTEST.fullmatch(words)
     if order is None or order["noun"].lower() not in ("it", "this", "them", *_nouns(garment)):
-        return None
+        return _program_of_part(words, garment)
     return next(program for pattern, program in _RESULTS if pattern.fullmatch(order["result"] or ""))
+
+
+def _program_of_part(words: str, garment: Garment) -> Program | None:
+    order = _OF_PART.fullmatch(words)
+    if order is None:
+        return None
+    way = (order["way"] or "").lower()
+    if order["edge"]:
+        edge = order["edge"].lower()
+        return (Piece("half", edge[0].upper()),) if way in (*_ANY_WAY, *_AWAY_FROM[edge]) else None
+    if order["sleeve"] and garment.family == "tshirt":
+        side = order["sleeve"].lower()
+        sides = "LR" if side in ("the", "both", "both the") else side[0].upper()
+        return tuple(Piece("sleeve", one, "any") for one in sides) if way in ("", *_INWARD) else None
+    if order["corners"] and garment.plain and way in ("in", *_TO_THE_MIDDLE):
+        return tuple(Piece("centre", corner) for corner in ("BL", "TL", "TR", "BR"))
+    return None
+
+
+_ANY_WAY = ("over", "across")
+_AWAY_FROM = {
+    "left": ("right", "to the right"), "right": ("left", "to the left"), "top": ("down",), "bottom": ("up",),
+}  # fmt: skip
+_INWARD = ("in", "inward", "inwards", "over")
+_TO_THE_MIDDLE = tuple(f"{way}to the {middle}" for way in ("", "in") for middle in ("middle", "centre", "center"))
+_WAYS = "|".join(
+    sorted({*_ANY_WAY, *_INWARD, *_TO_THE_MIDDLE, *(way for ways in _AWAY_FROM.values() for way in ways)}, reverse=True)
+)
+_OF_PART = re.compile(
+    r"(?:please,? )?fold (?:(?:the )?(?P<edge>left|right|top|bottom)(?: (?:edge|side|half|end))?"
+    r"|(?:the )?(?P<sleeve>left|right|the|both|both the) sleeves?|(?P<corners>(?:all )?(?:the )?(?:four )?corners))"
+    rf"(?: (?P<way>{_WAYS}))?(?:,? please)?[.!]?",
+    re.IGNORECASE,
+)
 
 
 def _nouns(garment: Garment) -> tuple[str, ...]:
