@@ -11,6 +11,7 @@ from polyfold.cli import _parser, main
 from polyfold.cli._options.numbers import TYPES
 
 NOT_WHOLE = ("-1", "nan", "1.5", "many", "9" * 30, "9" * 5000, "")
+NO_SHARE = ("-0.1", "1.5", "nan", "half", "")
 NO_LENGTH = ("0", "-0.01", "nan", "inf", "long", "")
 
 
@@ -58,7 +59,7 @@ def test_every_number_of_every_verb_is_checked_in_the_same_way():
 def test_a_wrong_number_is_refused_with_what_is_wanted(polyfold, number):
     *before, option = number
     (action,) = [it for flags, it in options_of(before[0]) if [*flags, it.option_strings[0]] == [*before, option]]
-    wrong = NO_LENGTH if action.type == "metres" else NOT_WHOLE
+    wrong = {"metres": NO_LENGTH, "share": NO_SHARE}.get(action.type, NOT_WHOLE)
     for text in wrong:
         said = one_line(polyfold(*before, f"{option}={text}"), 2)
         assert option in said

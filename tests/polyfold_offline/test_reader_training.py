@@ -141,9 +141,16 @@ def test_a_trained_reader_learns_from_sentences_of_ones_own(tmp_path, capsys):
     assert words.keys() > json.loads((FOLDER / "words.json").read_text("utf-8")).keys()
     assert main([*command, "--steps", "2"]) == 1
     assert "holds a training with another plan; choose another folder" in capsys.readouterr().err
+    assert main([*command, "--steps", "1", "--keep", "0.9"]) == 1, "what is kept decides the weights too"
     before, after = reader_weights(FOLDER), reader_weights(tmp_path / "out")
     assert before.keys() == after.keys()
-    assert 0 < max((after[name] - before[name]).abs().max() for name in before) < 0.05
+    assert 0 < _largest_change(before, after) < 0.05
+    assert main([*command[:-1], str(tmp_path / "same"), "--steps", "1", "--keep", "1"]) == 0
+    assert _largest_change(before, reader_weights(tmp_path / "same")) < 1e-6
+
+
+def _largest_change(before, after):
+    return max((after[name] - before[name]).abs().max() for name in before)
 
 
 def test_what_is_no_trained_reader_is_named(tmp_path):

@@ -13,7 +13,7 @@ class TrainLanguage:
     def configure(parser: argparse.ArgumentParser) -> None:
         """Add the options."""
         from polyfold_offline.training.learner import Schedule
-        from polyfold_offline.training.learning import GOING_ON
+        from polyfold_offline.training.learning import GOING_ON, KEPT
 
         parser.add_argument(
             "sentences", type=Path, help="folder of *.jsonl, for example experiments/language/sentences/train"
@@ -34,6 +34,13 @@ class TrainLanguage:
             help="go on from a trained reader, for example --out of an earlier training, at a third of the rate",
         )
         parser.add_argument(
+            "--keep",
+            type="share",
+            default=KEPT,
+            metavar="SHARE",
+            help=f"with --from, the share of that reader's weights that stays in the result (default: {KEPT})",
+        )
+        parser.add_argument(
             "--steps", type="count", metavar="N", help=f"default: {Schedule.steps}; with --from {GOING_ON}"
         )
         parser.add_argument("--seed", type="seed", default=Schedule.seed, metavar="N", help=f"default: {Schedule.seed}")
@@ -48,7 +55,7 @@ class TrainLanguage:
         sentences = read_corpus(arguments.sentences)
         if arguments.reader is not None:
             plan = Schedule.going_on(arguments.steps or GOING_ON, arguments.seed)
-            beginning = begin_with_reader(arguments.reader)
+            beginning = begin_with_reader(arguments.reader, arguments.keep)
         else:
             plan = Schedule(steps=arguments.steps or Schedule.steps, seed=arguments.seed)
             beginning = begin_with_encoder(arguments.encoder, arguments.seed)

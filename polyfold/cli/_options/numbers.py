@@ -37,5 +37,16 @@ def metres(text: str) -> float:
     return length
 
 
-TYPES = {"seed": whole_number(0), "count": whole_number(1), "metres": metres}
+def share(text: str) -> float:
+    """The ``type`` of an option that takes a share of a whole."""
+    try:
+        part = float(text)
+    except ValueError:
+        part = math.nan
+    if not 0 <= part <= 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is no share; give a number from 0 to 1, for example 0.5")
+    return part
+
+
+TYPES = {"seed": whole_number(0), "count": whole_number(1), "metres": metres, "share": share}
 """By the name that an option of any verb, a plugin's too, gives as its ``type``."""
