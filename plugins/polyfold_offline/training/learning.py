@@ -65,8 +65,8 @@ def train(learner: Learner, plan: Schedule, out: Path) -> None:
 KEPT = 0.5
 """Share of a trained reader's own weights that stays where it goes on to learn. The mean keeps what either reads
 (Wortsman et al. 2022, DOI 10.1109/CVPR52688.2022.00780): of 1,600 sentences in manners never seen one such mean read
-94.8 % right, the end alone 94.4, and it kept orders about trousers that the end was no longer sure of. What is new to the
-reader fades with it, so that whoever teaches it something of another kind keeps less."""
+94.8 % right, the end alone 94.4, and it kept orders about trousers that the end was no longer sure of. What is new
+fades with it, so that whoever teaches a reader something of another kind keeps less."""
 
 _MADE = 20_000
 """Sentences of the generator, those that a task suite asks with left out."""
