@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from polyfold_offline.reading.reader import Reader
 
 
-MODEL = "offline-4"
+MODEL = "offline-5"
 
 
 class OfflineLLM:

@@ -194,3 +194,5 @@ def test_a_half_that_is_halved_again_the_same_way_is_said_in_other_words_than_th
     said = [say(fold, kind) for fold in (first, second)]
     assert said[0] != said[1]
     assert [fold_of_subgoal(text, garment(kind)) for text in said] == [first, second]
+    for text in said:
+        check_subgoal(text, create("garments", kind).template())

@@ -17,10 +17,10 @@ _EDGE_NAMES = {
     "tshirt": {"left": "left side", "right": "right side", "top": "shoulders", "bottom": "hem"},
     "pants": {"left": "left leg", "right": "right leg", "top": "waist", "bottom": "leg ends"},
 }
-_EDGE_OF_THE_REST = {
-    "left": "left-hand edge", "right": "right-hand edge", "top": "upper edge", "bottom": "lower edge",
+_PART_OF_THE_REST = {
+    "left": "left half", "right": "right half", "top": "upper edge", "bottom": "lower edge",
 }  # fmt: skip
-"""What the edge is called from which folded cloth is halved again: in other words than that of the flat cloth."""
+"""What moves where folded cloth is halved again: in other words than where it is flat."""
 
 PART_NAMES = {3: "third", 4: "quarter", 5: "fifth", 6: "sixth", 8: "eighth"}
 _NUMBERS = {2: "two", 3: "three"}
@@ -94,5 +94,5 @@ def _say_half(fold: Fold, kind: str) -> str:
         return f"fold the {fold.part} half {direction} to the {opposite} half along the gap"
     part, target = edge_name(kind, fold.part), edge_name(kind, opposite)
     if fold.manner == "again":
-        part = _EDGE_OF_THE_REST[fold.part]
+        part = _PART_OF_THE_REST[fold.part]
     return f"fold the {part} {direction} to the {target} along the {axis}"

@@ -11,9 +11,9 @@ from polyfold.errors import ConfigError
 FOLDER = Path(__file__).parent
 
 SHA256 = {
-    "reader.safetensors": "3b5ea883f8647532a2fc09b585b2b11929c89991632125db77705f2a8cb31579",
+    "reader.safetensors": "21c569f5eb3cf8bb7d2322e96cb8d8f2fefcefede27bb5b887c111d437e6a7ab",
     "pieces.json": "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037",
-    "words.json": "4be8425b8a69a7e39f40dcd57af38ded4d28adcf49bf3d859d1dadf64f557e82",
+    "words.json": "03ab09a4ccad4437e52cc27b3bd4d6a1d41585dc8e57de58ae3534d22319bd5f",
 }
 
 SURE = 0.85
