@@ -127,7 +127,7 @@ def test_readings_that_allow_one_fold_are_weighed_together():
     from polyfold_offline.cloth.garment import Garment
     from polyfold_offline.reading.reader import Reader
 
-    readings = Reader(FOLDER, sure=0.8).readings("Can you make this half as high?", Garment("rectangle", "rectangle"))
+    readings = Reader(FOLDER, sure=0.8).readings("Half the height, please.", Garment("rectangle", "rectangle"))
     ways = {str(reading.program[0]): reading.sure for reading in readings}
     assert readings[0].program[0].operation == "half"
     assert readings[0].program[0].place in ("end", "T", "B", "any")

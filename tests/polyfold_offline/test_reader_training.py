@@ -162,9 +162,9 @@ def test_what_is_no_trained_reader_is_named(tmp_path):
 
 
 def test_a_written_meaning_names_the_lengths_of_its_text():
-    example = make_example("square", "turn in 4 cm at the top, I mean five centimetres", "strip T 5cm", "x")
+    example = make_example("square", "4 cm are too little: five centimetres at the top", "strip T 5cm", "x")
     assert example is not None
-    assert (example.text, str(example.program[0])) == ("turn in #1 cm at the top, I mean #2 cm", "strip T #2")
+    assert (example.text, str(example.program[0])) == ("#1 cm are too little: #2 cm at the top", "strip T #2")
     assert make_example("square", "turn in a bit", "strip T 5cm", "x") is None
 
 
