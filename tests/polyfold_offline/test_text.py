@@ -30,6 +30,8 @@ COMMON = {"leaf", "button", "lift", "cornet", "riddle", "the", "of", "fold"}
         ("5 cm at the top, then 10", "#1 cm at the top, then 10", (5.0,)),
         ("0.25 of the width, 20 % of it and 2/10", "1/4 of the width, 1/5 of it and 1/5", ()),
         ("half, 50 percent, 1/2", "half, half, half", ()),
+        ("150% of the length", "#1 cm of the length", (1.5,)),
+        ("I am 100 % sure", "I am 100 % sure", ()),
         ("a tenth of the width", "#1 cm of the width", (0.1,)),
         ("two sevenths, then 3 cm", "#2 cm, then #1 cm", (3.0, 2 / 7)),
         (

@@ -107,7 +107,7 @@ def _length(mark: str, lengths: Sequence[Length], side_cm: float | None) -> floa
 def _check(folds: list[Fold]) -> None:
     """Refuse what was most likely misread: one fold told twice, a fold and its mirror image, folds without end."""
     once = [(fold.action, fold.part) for fold in folds if fold.action in ("band", "middle", "sleeve")]
-    ears = [fold.part for fold in folds if fold.target == "centre"]
+    ears = [(fold.part, fold.target) for fold in folds if fold.action == "corner"]
     if len(set(once)) < len(once) or len(set(ears)) < len(ears):
         raise NotUnderstoodError("it seems to ask for the same fold twice; name each fold once")
     for first, second in pairwise(folds):

@@ -42,7 +42,7 @@ def with_plain_shares(text: str, mark: str) -> tuple[str, list[Fraction]]:
 
     def plain(match: re.Match[str]) -> str:
         share = _value(match)
-        if not 0 < share < 1:
+        if share == 0 or (share >= 1 and not match["percent"]) or share == 1:
             return match[0]
         if share == Fraction(1, 2):
             return "half"

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 from polyfold_offline.cloth.folds import Fold, say
@@ -90,6 +91,8 @@ class Reader:
             return [Reading(program, folds_of(program, (), garment), "", 1.0)]
         read = take_lengths(_in_known_words(sentence, garment))
         candidates = likeliest(self._network, self._pieces.read(read.text, garment.family), garment.family)
+        if _SAME_AGAIN.search(read.text) and not _OTHER_WAY.search(read.text):
+            candidates = [replace(candidate, program=_same_again(candidate.program)) for candidate in candidates]
         return _together(candidates if _SECOND_STATEMENT.search(read.text) else _consistent(candidates), read, garment)
 
     def _doubt(self, sentence: str, garment: Garment, readings: Sequence[Reading]) -> str:
@@ -126,6 +129,17 @@ _TAKEN_BACK = re.compile(
 )
 """What a person ends with who wants nothing done after all."""
 
+_SAME_AGAIN = re.compile(
+    r"\b(?:(?:the )?same (?:again|way|direction|thing|fold|once more)|(?:and|then) the same|again(?:,? the)? same"
+    r"|repeat(?:ed)?|do (?:it|that|this) (?:again|once more))\b",
+    re.IGNORECASE,
+)
+_OTHER_WAY = re.compile(
+    r"\b(?:other|opposite|different|crosswise|crossways|perpendicular|sideways|across|any way|whichever)\b",
+    re.IGNORECASE,
+)
+"""A fold that is to be done again goes the same way as before, unless another way is spoken of."""
+
 _SECOND_STATEMENT = re.compile(
     r"[,;:!?\n]|\.(?=\s*\w)|\b(?:and|but|while|whilst|yet|although|though|without|also|same|only|just|both|one|once|single|or|"
     r"stay|stays|keep|keeping|leave|leaving|at|not|don't|never)\b",
@@ -136,6 +150,15 @@ _SECOND_STATEMENT = re.compile(
 _CLAUSES = re.compile(r"\.+(?!\d)|[;:!?\n]+|,\s+(?:and\s+)?(?:then\s+)?|\s+(?:and\s+)?then\s+")
 _MANY_CLAUSES = 8
 _LONG = 25
+
+
+def _same_again(program: Program) -> Program:
+    """A half fold along an edge that is named, then one whose way is left open: along the same edge."""
+    found = list(program)
+    for number, (before, piece) in enumerate(pairwise(program), 1):
+        if piece == Piece("half", "any") and before.operation == "half" and before.place != "any":
+            found[number] = found[number - 1]
+    return tuple(found)
 
 
 def _consistent(candidates: Sequence[Candidate]) -> list[Candidate]:
