@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from importlib.resources import files
@@ -14,6 +15,7 @@ from polyfold.tasks import load_suite
 
 SETS = Path(__file__).parent
 REGISTERS = tomllib.loads((SENTENCES.parent / "registers.toml").read_text("utf-8"))["register"]
+NEWCOMERS = SENTENCES.parent / "newcomers"
 USES = ("train", "dev", "final")
 
 
@@ -50,6 +52,10 @@ def test_no_sentence_that_measures_is_learned_from():
     shared = {text for text in learned & measured_on() if len(text.split()) > 2}
     assert not shared
     assert not {plain(s.text) for use in ("dev", "final") for s in read_sentences(use) if len(s.text) > 30} & learned
+    lines = [line for file in NEWCOMERS.glob("*.jsonl") for line in file.read_text("utf-8").splitlines()]
+    newcomers = [json.loads(line)["text"] for line in lines]
+    assert len(newcomers) == 240
+    assert not {plain(text) for text in newcomers if len(text) > 30} & learned
 
 
 @pytest.mark.parametrize("use", USES)
