@@ -31,7 +31,7 @@ def register_simulators(register):
 @hookimpl
 def register_segmenters(register):
     """Register the segmenters of plain and of photographed tables, and the one that spoils masks."""
-    register("colour", "polyfold_standard.segmenter:ColourThreshold", "colour distance from the table")
+    register("colour", "polyfold_standard.segmenters.colour:ColourThreshold", "colour distance from the table")
     register(
         "photo",
         "polyfold_standard.segmenters.photo:PhotoSegmenter",
@@ -49,7 +49,9 @@ def register_segmenters(register):
         "a promptable network of your own, as an ONNX file",
     )
     register(
-        "noisy", "polyfold_standard.noise:NoisySegmenter", "another segmenter whose edge wavers, tears or is coarse"
+        "noisy",
+        "polyfold_standard.segmenters.noisy:NoisySegmenter",
+        "another segmenter whose edge wavers, tears or is coarse",
     )
 
 

@@ -12,24 +12,10 @@ Floats = NDArray[np.float64]
 
 def homography(pixels: ArrayLike, places: ArrayLike) -> Floats:
     """The homography, shape (3, 3), that maps points, shape (N >= 4, 2), to others by least squares."""
-    start, end = np.asarray(pixels, float), np.asarray(places, float)
-    inner, outer = _centring(start), _centring(end)
-    x, y = mapped(inner, start).T
-    u, v = mapped(outer, end).T
-    one, zero = np.ones_like(x), np.zeros_like(x)
-    rows = np.vstack([
-        np.column_stack([x, y, one, zero, zero, zero, -u * x, -u * y, -u]),
-        np.column_stack([zero, zero, zero, x, y, one, -v * x, -v * y, -v]),
-    ])  # fmt: skip
-    found = np.linalg.inv(outer) @ np.linalg.svd(rows)[2][-1].reshape(3, 3) @ inner
-    return found / np.linalg.norm(found)
+    import cv2
 
-
-def _centring(points: Floats) -> Floats:
-    """Moves points to a mean of 0 and a spread of 1, without which least squares of pixels loses digits."""
-    middle = points.mean(axis=0)
-    spread = float(np.abs(points - middle).mean()) or 1.0
-    return np.array([[1 / spread, 0, -middle[0] / spread], [0, 1 / spread, -middle[1] / spread], [0, 0, 1]])
+    found, _ = cv2.findHomography(np.asarray(pixels, float), np.asarray(places, float))
+    return np.asarray(found / np.linalg.norm(found), np.float64)
 
 
 def mapped(matrix: Floats, points: Floats) -> Floats:

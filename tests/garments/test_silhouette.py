@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
-from polyfold_standard.segmenter import ColourThreshold
+from polyfold_standard.segmenters.colour import ColourThreshold
 from shapes import KINDS
 
 from polyfold.errors import GarmentError, GroundingError

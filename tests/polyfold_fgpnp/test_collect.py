@@ -148,6 +148,7 @@ def test_a_data_set_in_one_file_is_the_same_and_smaller(folds_folder, tmp_path, 
 
 def test_a_damaged_file_of_a_data_set_is_refused_whichever_byte_it_is(folds_folder, tmp_path):
     from polyfold_fgpnp.data.dataset import pack_dataset
+    from polyfold_fgpnp.data.packing import write_packed
 
     file = tmp_path / "folds.npz"
     size = pack_dataset(folds_folder, file)
@@ -159,6 +160,16 @@ def test_a_damaged_file_of_a_data_set_is_refused_whichever_byte_it_is(folds_fold
     file.write_bytes(whole[: size // 2])
     with pytest.raises(ConfigError, match="is no data set"):
         load_dataset(file)
+    data = load_dataset(folds_folder)
+    write_packed(file, {**data.description, "schema_version": 99}, data.columns, row=50)
+    with pytest.raises(ConfigError, match="schema version 99"):
+        load_dataset(file)
+
+
+def test_what_is_only_described_is_not_packed(folds_folder, tmp_path, capsys):
+    assert main(["collect", "--describe", str(folds_folder), "--pack", str(tmp_path / "folds.npz")]) == 1
+    assert "give --out DIR" in capsys.readouterr().err
+    assert not (tmp_path / "folds.npz").exists()
 
 
 class Diverging:

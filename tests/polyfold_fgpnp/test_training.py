@@ -384,11 +384,6 @@ def test_policies_and_verbs_are_listed_without_torch():
     subprocess.run([sys.executable, "-c", code], check=True, env=os.environ)
 
 
-@pytest.mark.parametrize("path", sorted((Path(__file__).parents[2] / "experiments/training").glob("*.toml")))
-def test_the_recorded_configurations_are_valid(path):
-    assert read_config(path).data
-
-
 def test_weights_say_what_they_were_trained_from(folds_folder, weights):
     from experiments.benchmarks.policies.trained import HEADERS, table
 
@@ -400,21 +395,6 @@ def test_weights_say_what_they_were_trained_from(folds_folder, weights):
     coupled = data.of_recipes("uniform", "extreme", "chosen")
     assert 0 < int(said["folds"]) < len(coupled), "those of the garment that is held out are not counted"
     assert len(table(shipped_weights()).splitlines()) == 2 + len(shipped_weights())
-
-
-def test_the_rows_of_the_papers_table_are_trained_alike_but_for_what_they_value_and_what_was_tried():
-    folder = Path(__file__).parents[2] / "experiments/training"
-    names = ("csam", "1sam", "2sam", "vertex-learned")
-    configs = {name: read_config(folder / f"{name}.toml") for name in names}
-    assert [config.network.variant for config in configs.values()] == list(names)
-    assert len({config.data for config in configs.values()}) == len(names)
-    own = {"data": ("same",), "snapshots": ()}
-    alike = [
-        config.model_copy(update={**own, "network": config.network.model_copy(update={"variant": "csam"})})
-        for config in configs.values()
-    ]
-    assert all(config == alike[0] for config in alike)
-    assert (alike[0].network.frame, alike[0].reward, alike[0].scale) == ("camera", "contour", "linear")
 
 
 def test_both_rewards_teach_the_mean_of_their_labels(folds_folder):

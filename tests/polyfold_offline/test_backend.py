@@ -187,9 +187,9 @@ def test_an_order_that_only_names_the_garment_is_carried_out_whatever_its_name(s
 )
 def test_another_garment_or_part_is_no_order_for_this_one(text):
     from polyfold_offline.cloth.garment import Garment
-    from polyfold_offline.reading.orders import program_of_shortest_order
+    from polyfold_offline.reading.orders import program_of_order
 
-    assert program_of_shortest_order(text, Garment("tshirt", "tshirt")) is None
+    assert program_of_order(text, Garment("tshirt", "tshirt")) is None
 
 
 def test_lengths_reach_the_fold_line(planner, llm):

@@ -59,6 +59,10 @@ class Collect:
 
         if (arguments.out is None) == (arguments.describe is None):
             raise ConfigError("say either where to collect (--out DIR) or what to show (--describe DIR)")
+        if arguments.describe is not None and arguments.pack is not None:
+            raise ConfigError(
+                "--pack packs what is collected; give --out DIR, which collects nothing anew if it is complete"
+            )
         if arguments.describe is not None:
             print(describe(arguments.describe))
             return 0

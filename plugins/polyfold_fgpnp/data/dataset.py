@@ -206,7 +206,8 @@ def load_dataset(path: str | Path) -> Dataset:
     """
     path = Path(path)
     if path.is_file():
-        return Dataset(*read_packed(path))
+        description, columns = read_packed(path)
+        return Dataset(_of_this_schema(description, path), columns)
     description = _read_description(path)
     if not description.get("complete"):
         raise ConfigError(f"the data set in {path} is not complete; run the same `polyfold collect` again to finish it")
@@ -241,6 +242,10 @@ def _read_description(path: Path) -> Description:
         raise _damaged(file, str(error)) from error
     if not isinstance(description, dict) or "parameters" not in description:
         raise _damaged(file, "it describes no data set")
+    return _of_this_schema(description, file)
+
+
+def _of_this_schema(description: Description, file: Path) -> Description:
     if description.get("schema_version") == 1:
         return _from_schema_1(description)
     if description.get("schema_version") != SCHEMA:

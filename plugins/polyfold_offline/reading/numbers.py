@@ -3,9 +3,24 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from fractions import Fraction
 
 from polyfold_offline.meaning.program import FRACTIONS
+
+UNITS = r"(?:mm|mill?imet(?:er|re)s?|cms?|centimet(?:er|re)s?|inch(?:es)?|m\b|met(?:er|re)s?)"
+"""Pattern of a unit of length."""
+
+_TEENS = """zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen
+seventeen eighteen nineteen"""
+_TENS = {"twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90}
+_NUMBERS = {word: number for number, word in enumerate(_TEENS.split())} | _TENS
+
+AMOUNT = (
+    rf"(?<![\w.,/])(?:\d+(?:[.,]\d+)?|(?:(?:{'|'.join(_TENS)})[ -])?"
+    rf"(?:{'|'.join(_NUMBERS)})(?:\s+and\s+a\s+half)?)"
+)
+"""Pattern of a number, in figures or in words."""
 
 _DENOMINATORS = {
     "seventh": 7, "ninth": 9, "tenth": 10, "eleventh": 11, "twelfth": 12, "sixteenth": 16, "twentieth": 20,
@@ -33,12 +48,42 @@ _APART = r"[\s,.;:!…–—-]"
 _NUMBER_ENDS = r"(?=(?:\s+(?:of it|deep|wide|high|tall))?(?:\s*(?:[,.;:!?…]|$)|\s+(?:instead|rather|please)\b))"
 
 
-def with_plain_shares(text: str, mark: str) -> tuple[str, list[Fraction]]:
+_WRONG = rf"{AMOUNT}\s*-?\s*(?P<unit>{UNITS})(?!\w)(?P<between>[^;!?#\d]{{0,40}}?){_APART}+"
+_RIGHT = rf"(?P<last>{AMOUNT})(?:\s*-?\s*(?P<other>{UNITS})(?!\w))?"
+_CORRECTED = tuple(
+    re.compile(_WRONG + right, re.IGNORECASE)
+    for right in (
+        rf"(?:(?:{_CORRECTING}|not {AMOUNT}(?:\s*{UNITS})?)(?!\w){_APART}*)+{_RIGHT}{_NUMBER_ENDS}",
+        rf"{_RIGHT},?\s+i (?:mean|meant)(?: to say)?\b",
+    )
+)
+
+
+def number_of(words: str) -> float:
+    """The number that :data:`AMOUNT` matched."""
+    words = words.lower().replace(",", ".")
+    half = 0.5 if "half" in words else 0.0
+    words = re.sub(r"\s+and\s+a\s+half", "", words)
+    try:
+        return float(words)
+    except ValueError:
+        return sum(_NUMBERS[word] for word in re.split(r"[ -]+", words)) + half
+
+
+def with_last_numbers(text: str) -> str:
+    """A length that is corrected, *5 cm on the left, no, make that 10*, with its last number alone."""
+    for corrected in _CORRECTED:
+        text = corrected.sub(lambda it: f"{it['last']} {it['other'] or it['unit']}{it['between']}", text)
+    return text
+
+
+def with_plain_shares(text: str, marked: Callable[[Fraction], str]) -> str:
     """Shares such as ``0.25``, ``20 %`` or ``2/10`` in the words that the reader knows, ``1/4``.
 
-    Those that it does not know, such as a tenth, become ``mark`` and are returned, in their order.
+    Args:
+        text: the sentence.
+        marked: what to put in the place of those that it does not know, such as a tenth; called in their order.
     """
-    unknown: list[Fraction] = []
 
     def plain(match: re.Match[str]) -> str:
         share = _value(match)
@@ -46,12 +91,9 @@ def with_plain_shares(text: str, mark: str) -> tuple[str, list[Fraction]]:
             return match[0]
         if share == Fraction(1, 2):
             return "half"
-        if str(share) in FRACTIONS:
-            return str(share)
-        unknown.append(share)
-        return mark
+        return str(share) if str(share) in FRACTIONS else marked(share)
 
-    return _SHARE.sub(plain, text), unknown
+    return _SHARE.sub(plain, text)
 
 
 def _value(match: re.Match[str]) -> Fraction:
@@ -62,25 +104,3 @@ def _value(match: re.Match[str]) -> Fraction:
     if match["over"]:
         return Fraction(int(match["over"]), int(match["under"])) if int(match["under"]) else Fraction(0)
     return Fraction(_COUNTS[match["count"].lower()], _DENOMINATORS[match["part"].lower()])
-
-
-def with_last_numbers(text: str, amount: str, unit: str) -> str:
-    """A length that is corrected, *5 cm on the left, no, make that 10*, with its last number alone.
-
-    Args:
-        text: the sentence.
-        amount, unit: patterns of a number and of a unit of length.
-    """
-    wrong = rf"{amount}\s*-?\s*(?P<unit>{unit})(?!\w)(?P<between>[^;!?#\d]{{0,40}}?)"
-    right = rf"(?P<last>{amount})(?:\s*-?\s*(?P<other>{unit})(?!\w))?"
-    before = rf"{_APART}+(?:(?:{_CORRECTING}|not {amount}(?:\s*{unit})?)(?!\w){_APART}*)+{right}{_NUMBER_ENDS}"
-    after = rf"{_APART}+{right},?\s+i (?:mean|meant)(?: to say)?\b".replace("<last>", "<last2>").replace(
-        "other", "other2"
-    )
-    corrected = re.compile(f"{wrong}(?:{before}|{after})", re.IGNORECASE)
-
-    def last(found: re.Match[str]) -> str:
-        number, own = found["last"] or found["last2"], found["other"] or found["other2"]
-        return f"{number} {own or found['unit']}{found['between']}"
-
-    return corrected.sub(last, text)

@@ -27,19 +27,6 @@ def fold_of_subgoal(sentence: str, garment: Garment) -> Fold | None:
     return next((fold for fold in _sayable(garment) if say(fold, garment.kind) == words), None)
 
 
-def fold_of_plain_order(sentence: str, garment: Garment) -> Fold | None:
-    """The fold of an order in the fewest words, *fold the left edge onto the right edge*; None of any other.
-
-    The reader learns from no sentence that measures it, and these are just the shortest of them.
-    """
-    order = _PLAIN.fullmatch(" ".join(sentence.split()))
-    for edge in EDGES if order else ():
-        names, others = ({f"{e} edge", f"{e} side", edge_name(garment.kind, e)} for e in (edge, OPPOSITE_EDGE[edge]))
-        if order and order["part"].lower() in names and order["other"].lower() in others:
-            return Fold("half", edge)
-    return None
-
-
 _PLAIN = re.compile(
     r"(?:please )?(?:fold|bring|put|lay) (?:the )?(?P<part>[a-z ]+?) "
     r"(?:over |on |across |(?:up|down|left|right)(?:wards?)? )?(?:to|onto|on|over|top of) (?:the )?"
@@ -49,17 +36,32 @@ _PLAIN = re.compile(
 _STRIP = re.compile(r"fold the (?P<edge>left|right|top|bottom) strip of (?P<cm>\d+(?:\.\d+)?) cm \w+ward to the rest")
 
 
-def program_of_shortest_order(sentence: str, garment: Garment) -> Program | None:
-    """The program of an order that only names the garment, *fold the shirt*, *fold it in half twice*; None of others.
+def program_of_order(sentence: str, garment: Garment) -> Program | None:
+    """The program of an order in the fewest words; None of any other.
 
-    So is one that only names a part and where it goes, *fold the bottom up*, *fold the left sleeve*. They hold too few
+    Of the garment alone, *fold the shirt*, *fold it in half twice*; of a part and where it goes, *fold the bottom up*,
+    *fold the left sleeve*; of an edge and the opposite one, *fold the left edge onto the right edge*. They hold too few
     words for a network to be sure of any: one name of a garment more or less decides.
     """
     words = " ".join(sentence.split())
+    readers = (_program_of_garment, _program_of_part, _program_of_edges)
+    return next((program for read in readers if (program := read(words, garment)) is not None), None)
+
+
+def _program_of_garment(words: str, garment: Garment) -> Program | None:
     order = _SHORTEST.fullmatch(words)
     if order is None or order["noun"].lower() not in ("it", "this", "them", *_nouns(garment)):
-        return _program_of_part(words, garment)
+        return None
     return next(program for pattern, program in _RESULTS if pattern.fullmatch(order["result"] or ""))
+
+
+def _program_of_edges(words: str, garment: Garment) -> Program | None:
+    order = _PLAIN.fullmatch(words)
+    for edge in EDGES if order else ():
+        names, others = ({f"{e} edge", f"{e} side", edge_name(garment.kind, e)} for e in (edge, OPPOSITE_EDGE[edge]))
+        if order and order["part"].lower() in names and order["other"].lower() in others:
+            return (Piece("half", edge[0].upper()),)
+    return None
 
 
 def _program_of_part(words: str, garment: Garment) -> Program | None:

@@ -16,7 +16,7 @@ from polyfold_offline.meaning.folding import REASONS, Folding, folds_of
 from polyfold_offline.meaning.program import Piece, Program
 from polyfold_offline.reading.decoding import Candidate, likeliest
 from polyfold_offline.reading.network import Network
-from polyfold_offline.reading.orders import fold_of_plain_order, fold_of_subgoal, program_of_shortest_order
+from polyfold_offline.reading.orders import fold_of_subgoal, program_of_order
 from polyfold_offline.reading.pieces import Pieces
 from polyfold_offline.reading.text import Read, take_lengths
 
@@ -71,7 +71,7 @@ class Reader:
         Raises:
             NotUnderstoodError: with the reason, and the nearest thing that can be done where there is one.
         """
-        if (fold := fold_of_subgoal(sentence, garment) or fold_of_plain_order(sentence, garment)) is not None:
+        if (fold := fold_of_subgoal(sentence, garment)) is not None:
             return Folding(garment, folds=[fold])
         readings = self.readings(sentence, garment)
         best = readings[0]
@@ -87,7 +87,7 @@ class Reader:
             return [Reading((Piece("no", "action"),), None, REASONS["action"], 1.0)]
         if _TAKEN_BACK.search(sentence):
             return [Reading((Piece("no", "contradiction"),), None, "it takes back what it asks for", 1.0)]
-        if (program := program_of_shortest_order(sentence, garment)) is not None:
+        if (program := program_of_order(sentence, garment)) is not None:
             return [Reading(program, folds_of(program, (), garment), "", 1.0)]
         read = take_lengths(_in_known_words(sentence, garment))
         candidates = likeliest(self._network, self._pieces.read(read.text, garment.family), garment.family)

@@ -9,25 +9,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from polyfold_offline.reading.numbers import with_last_numbers, with_plain_shares
+from polyfold_offline.reading.numbers import AMOUNT, UNITS, number_of, with_last_numbers, with_plain_shares
 
 MAX_CHARACTERS = 1500
 """Longer sentences are cut; no request is."""
 
 _CM = {"mm": 0.1, "millimet": 0.1, "milimet": 0.1, "cm": 1.0, "centimet": 1.0, "m": 100.0, "met": 100.0, "inch": 2.54}
-_UNITS = r"(?:mm|mill?imet(?:er|re)s?|cms?|centimet(?:er|re)s?|inch(?:es)?|m\b|met(?:er|re)s?)"
-_UNIT = rf"(?P<unit>{_UNITS})"
-_NUMBERS = """zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen
-seventeen eighteen nineteen twenty"""
-_WORD_NUMBERS = {word: number for number, word in enumerate(_NUMBERS.split())}
-_TENS = {"twenty": 20, "thirty": 30, "forty": 40, "fifty": 50, "sixty": 60, "seventy": 70, "eighty": 80, "ninety": 90}
-_WORD_NUMBERS |= _TENS
-_AMOUNT = (
-    r"(?<![\w.,/])(?:\d+(?:[.,]\d+)?|(?:(?:twenty|thirty|forty|fifty|sixty|seventy|eighty|ninety)[ -])?"
-    rf"(?:{'|'.join(_WORD_NUMBERS)})(?:\s+and\s+a\s+half)?)"
-)
+_UNIT = rf"(?P<unit>{UNITS})"
 _LENGTH = re.compile(
-    rf"(?P<first>{_AMOUNT})\s*-?\s*(?:(?:x|×|by|\*)\s*(?P<second>{_AMOUNT})\s*-?\s*)?{_UNIT}(?![\w])", re.IGNORECASE
+    rf"(?P<first>{AMOUNT})\s*-?\s*(?:(?:x|×|by|\*)\s*(?P<second>{AMOUNT})\s*-?\s*)?{_UNIT}(?![\w])", re.IGNORECASE
 )
 _PAIR = re.compile(r"(?<![\w.,/])(?P<first>\d{2,3})\s*(?:x|×|by)\s*(?P<second>\d{2,3})(?![\w/])", re.IGNORECASE)
 _WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)?")
@@ -53,33 +43,18 @@ def take_lengths(sentence: str) -> Read:
         said = [match[name] for name in ("first", "second") if match[name]]
         marks = []
         for amount in said:
-            lengths.append(_number(amount) * scale)
+            lengths.append(number_of(amount) * scale)
             marks.append(f"#{len(lengths)}")
         return f" {' by '.join(marks)} cm"
 
-    text = unicodedata.normalize("NFKC", sentence)[:MAX_CHARACTERS]
-    text = with_last_numbers(text.replace("’", "'").replace("⁄", "/"), _AMOUNT, _UNITS)
-    text = _LENGTH.sub(mark, text)
-    text = _PAIR.sub(mark, text)
-    text, shares = with_plain_shares(text, _SHARE_MARK)
-    for share in shares:
+    def marked(share: Fraction) -> str:
         lengths.append(share)
-        text = text.replace(_SHARE_MARK, f"#{len(lengths)} cm", 1)
+        return f"#{len(lengths)} cm"
+
+    text = unicodedata.normalize("NFKC", sentence)[:MAX_CHARACTERS]
+    text = with_last_numbers(text.replace("’", "'").replace("⁄", "/"))
+    text = with_plain_shares(_PAIR.sub(mark, _LENGTH.sub(mark, text)), marked)
     return Read(" ".join(text.split()), tuple(lengths))
-
-
-_SHARE_MARK = "\ufffc"
-"""Stands for a share until it has its number; Unicode's placeholder for an object, which no keyboard types."""
-
-
-def _number(words: str) -> float:
-    words = words.lower().replace(",", ".")
-    half = 0.5 if "half" in words else 0.0
-    words = re.sub(r"\s+and\s+a\s+half", "", words)
-    try:
-        return float(words)
-    except ValueError:
-        return sum(_WORD_NUMBERS[word] for word in re.split(r"[ -]+", words)) + half
 
 
 class Corrector:
