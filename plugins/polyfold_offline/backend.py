@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from polyfold_offline.reading.reader import Reader
 
 
-MODEL = "offline-5"
+MODEL = "offline-6"
 
 
 class OfflineLLM:

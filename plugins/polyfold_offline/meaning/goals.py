@@ -130,7 +130,7 @@ _TESTS: dict[str, Test] = {
     "square": lambda outcome: outcome.rectangular > 0.85 and outcome.slim > 0.65 and outcome.area < 0.6,
     "triangle": _triangle,
     "small-triangle": lambda outcome: _triangle(outcome) and outcome.area < 0.3,
-    "strip": lambda outcome: outcome.rectangular > 0.7 and outcome.slim < 0.55 and outcome.width < 0.6,
+    "strip": lambda outcome: outcome.rectangular > 0.7 and outcome.slim < 0.4 and outcome.width < 0.6,
     "letter": lambda outcome: _actions(outcome)[-2:] == ["band", "band"],
     "gate": lambda outcome: _actions(outcome) == ["middle", "middle"],
     "envelope": lambda outcome: len(_ears(outcome)) == len(outcome.folds) == 4,

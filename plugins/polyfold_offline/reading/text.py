@@ -95,7 +95,8 @@ class Corrector:
         limit = 1 if len(word) < 6 else 2
         near = [(distance, other) for other in self._words if (distance := _edits(word, other, limit)) <= limit]
         alike = [(0.8 + 0.3 * _edits(word, other, 4), other) for other in self._by_sound.get(_sound(word), ())]
-        found = [*near, *((distance, other) for distance, other in alike if distance < 2.4)]
+        cut_short = [(0.9, other) for other in self._words if other.startswith(word)]
+        found = [*near, *cut_short, *((distance, other) for distance, other in alike if distance < 2.4)]
         return min(found, key=lambda it: (it[0], -self._words[it[1]]))[1] if found else None
 
 

@@ -11,9 +11,9 @@ from polyfold.errors import ConfigError
 FOLDER = Path(__file__).parent
 
 SHA256 = {
-    "reader.safetensors": "21c569f5eb3cf8bb7d2322e96cb8d8f2fefcefede27bb5b887c111d437e6a7ab",
+    "reader.safetensors": "8d32971a79643771431780a186132183f14b80f4dcf5b66b23114d1cd0e0194b",
     "pieces.json": "be50c3628f2bf5bb5e3a7f17b1f74611b2561a3a27eeab05e5aa30f411572037",
-    "words.json": "03ab09a4ccad4437e52cc27b3bd4d6a1d41585dc8e57de58ae3534d22319bd5f",
+    "words.json": "586d5ec805764a0597cfde150f963a841d91ad6c2bedaa2733e9a8b3b951c9af",
 }
 
 SURE = 0.85
