@@ -7,7 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from polyfold_offline.reading.text import Corrector, take_lengths
 
-WORDS = {"sleeve": 90, "corner": 80, "bottom": 70, "left": 60, "middle": 50, "towel": 40, "third": 30, "waist": 20}
+WORDS = {
+    "sleeve": 90, "corner": 80, "bottom": 70, "left": 60, "middle": 50, "towel": 40, "third": 30, "waist": 20,
+    "diagonal": 10, "vertical": 10,
+}  # fmt: skip
 COMMON = {"leaf", "button", "lift", "cornet", "riddle", "the", "of", "fold"}
 
 
