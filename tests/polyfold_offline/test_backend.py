@@ -94,7 +94,7 @@ def test_plain_sentences_are_carried_out_however_the_garment_lies(planner, llm, 
         ("square", "fold the left sleeve"), ("tshirt", "fold the trousers in half"), ("tshirt", "iron the shirt"),
         ("square", ""), ("square", "   "), ("pants", "what's the weather like?"),
         ("rectangle", "wash it at sixty degrees"), ("tshirt", "Unfold the shirt."),
-        ("pants", "please mend the left leg"),
+        ("pants", "please mend the left leg"), ("square", "Fold it in half, and then staple the edges."),
     ],
 )  # fmt: skip
 def test_what_is_no_fold_of_this_garment_is_refused(planner, llm, kind, text):

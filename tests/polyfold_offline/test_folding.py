@@ -88,7 +88,7 @@ def test_what_cannot_be_done_is_refused_with_the_reason(kind, code, words):
         ("square", "goal point T", 2), ("rectangle", "goal neat in 3", 3), ("square", "goal eighth", 3),
         ("square", "goal square", 2), ("rectangle", "goal sixth", 3), ("square", "goal sixteenth", 4),
         ("rectangle", "goal three-quarters", 1), ("pants", "goal sixth", 3), ("square", "goal tiny", 4),
-        ("tshirt", "goal tiny", 5),
+        ("tshirt", "goal tiny", 5), ("square", "goal strip", 2),
     ],
 )  # fmt: skip
 def test_goals_take_the_fewest_folds_that_reach_them(kind, code, count):

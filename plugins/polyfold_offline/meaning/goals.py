@@ -30,6 +30,9 @@ _RAGGED = 2.0
 _SLIM = 0.2
 """Among ends of as many folds the more compact is meant: a quarter is rather half as wide and tall than a strip."""
 
+_WIDE = 1.5
+"""A strip that is more than a third as wide as long is as bad as this many more folds."""
+
 _SHARES = {
     "three-quarters": 3 / 4, "half": 1 / 2, "third": 1 / 3, "quarter": 1 / 4, "sixth": 1 / 6, "eighth": 1 / 8,
     "sixteenth": 1 / 16,
@@ -65,6 +68,8 @@ def _cost(outcome: Outcome, goal: Piece) -> float:
     if goal.place == "neat" and goal.detail != NONE:
         return outcome.area  # so many folds were asked for, all ends have as many
     cost = len(outcome.folds) + (_SLIM * (1.0 - outcome.slim) if goal.place in _COMPACT else 0.0)
+    if goal.place == "strip":
+        return cost + _WIDE * (outcome.slim > 0.34)
     if (share := _SHARES.get(goal.place)) is None:
         return cost
     return cost + MISSED * abs(log(outcome.area / share)) + _RAGGED * (outcome.rectangular < 0.8)
@@ -130,7 +135,7 @@ _TESTS: dict[str, Test] = {
     "square": lambda outcome: outcome.rectangular > 0.85 and outcome.slim > 0.65 and outcome.area < 0.6,
     "triangle": _triangle,
     "small-triangle": lambda outcome: _triangle(outcome) and outcome.area < 0.3,
-    "strip": lambda outcome: outcome.rectangular > 0.7 and outcome.slim < 0.4 and outcome.width < 0.6,
+    "strip": lambda outcome: outcome.rectangular > 0.7 and outcome.slim < 0.55 and outcome.width < 0.6,
     "letter": lambda outcome: _actions(outcome)[-2:] == ["band", "band"],
     "gate": lambda outcome: _actions(outcome) == ["middle", "middle"],
     "envelope": lambda outcome: len(_ears(outcome)) == len(outcome.folds) == 4,
