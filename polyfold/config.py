@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from polyfold.errors import ConfigError, validation_problem
 from polyfold.errors._hints import file_problem, toml_problem
 
-__all__ = ["ComponentSpec", "Experiment", "load_experiment", "read_toml"]
+__all__ = ["ComponentSpec", "Experiment", "read_toml"]
 
 USUAL = "usual"
 """Stands for the fabric that a kind of garment is usually made of; no component is called so."""
@@ -70,15 +70,14 @@ class Experiment(BaseModel):
         """
         return _validated(settings, "the experiment")
 
+    @classmethod
+    def load(cls, path: str | Path) -> Experiment:
+        """Read an experiment from a TOML file. Raises ConfigError with the file and the wrong line or setting."""
+        return _validated(read_toml(path), str(path))
+
     def override(self, settings: dict[str, str | dict[str, Any] | ComponentSpec]) -> Experiment:
         """A copy with some components replaced."""
         return Experiment.of(**{**self.model_dump(), **settings})
-
-
-def load_experiment(path: str | Path) -> Experiment:
-    """Read an experiment from a TOML file. Raises ConfigError with the file and the wrong line or setting."""
-    settings = read_toml(path)
-    return _validated(settings, str(path))
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:

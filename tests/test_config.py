@@ -8,7 +8,7 @@ def test_a_file_says_what_an_experiment_is_made_of(tmp_path):
     path = tmp_path / "experiment.toml"
     path.write_text('policy = "farthest"\n\n[fabric]\nname = "denim"\nthickness = 0.0012\n')
     experiment = config.Experiment.of(policy="farthest", fabric={"name": "denim", "thickness": 0.0012})
-    assert config.load_experiment(path) == experiment
+    assert config.Experiment.load(path) == experiment
 
 
 @pytest.mark.parametrize(
@@ -27,20 +27,20 @@ def test_wrong_files_say_what_is_wrong(tmp_path, text, says):
     path = tmp_path / "wrong.toml"
     path.write_text(text)
     with pytest.raises(ConfigError, match=says):
-        config.load_experiment(path)
+        config.Experiment.load(path)
 
 
 def test_a_fabric_s_table_needs_no_name(tmp_path):
     path = tmp_path / "experiment.toml"
     path.write_text("[fabric]\nthickness = 0.0012\n")
-    assert config.load_experiment(path).fabric == config.ComponentSpec(name="usual", params={"thickness": 0.0012})
+    assert config.Experiment.load(path).fabric == config.ComponentSpec(name="usual", params={"thickness": 0.0012})
     path.write_text('fabric = "denim"\n')
-    assert config.load_experiment(path).fabric.name == "denim"
+    assert config.Experiment.load(path).fabric.name == "denim"
 
 
 def test_missing_file():
     with pytest.raises(ConfigError, match="there is no file"):
-        config.load_experiment("nowhere.toml")
+        config.Experiment.load("nowhere.toml")
 
 
 def test_override_leaves_the_original_alone():

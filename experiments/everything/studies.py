@@ -125,6 +125,10 @@ def _robustness(results: Results) -> Sequence[Section]:
     return [*_table(results), *_pairs(*pairs)(results)]
 
 
+def _robot_cell(results: Results) -> Sequence[Section]:
+    return [*_table(results), *_pairs(("cell", "cell, no recovery"), ("cell", "cloth alone"))(results)]
+
+
 def _policies(results: Results) -> Sequence[Section]:
     others = [name for name in results.study.variants if name != "affordance-pair"]
     return [*_table(results), *_pairs(*(("affordance-pair", other) for other in others))(results)]
@@ -139,6 +143,7 @@ STUDIES = (
     ),
     StudyStep("displaced", 0.2, _displaced),
     StudyStep("robustness", 1.0, _robustness),
+    StudyStep("robot_cell", 0.5, _robot_cell),
     StudyStep("ambiguous", 0.2, _table),
     StudyStep("planners", 0.5, _planners),
     StudyStep("groundings", 0.4, _groundings),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -32,13 +34,13 @@ class Clearances:
     Attributes:
         arms: one arm from the other.
         obstacles: an arm from the torso, the posts and the table.
-        hands: a hand with its fingers, which picks from the table, from the table; negative where it may press.
+        hands: a hand with its fingers, which picks from the table, from the table; negative where soft tips may press.
         itself: links of an arm that are not neighbours, from each other.
     """
 
     arms: float = 0.015
     obstacles: float = 0.010
-    hands: float = -0.001
+    hands: float = -0.003
     itself: float = 0.002
 
 
@@ -90,10 +92,9 @@ class Cell:
 
     def open(self) -> Cell:
         """Load the cell; nothing if it is loaded."""
-        import pybullet
-
         if self._client is not None:
             return self
+        pybullet = self._bullet
         client = pybullet.connect(pybullet.DIRECT)
         if client < 0:
             raise SimulationError("PyBullet has no room for another cell; close others first")
@@ -131,9 +132,7 @@ class Cell:
 
     @property
     def _bullet(self) -> Any:
-        import pybullet
-
-        return pybullet
+        return sys.modules.get("pybullet") or _imported()
 
     def set_arm(self, arm: int, joints: ArrayLike) -> None:
         """Put an arm, 0 or 1, at joint angles [rad, m], shape (N,), at once and without dynamics."""
@@ -308,6 +307,21 @@ class Cell:
                 if not both_behind and not list(self._closest(body.number, body.number, 0.01, other, link)):
                     pairs.append((other, link))
         return _Body(body.number, body.links, body.joints, body.fingers, body.tips, tuple(pairs))
+
+
+def _imported() -> Any:
+    """PyBullet, without the line about its build that version 3.2.7 writes to standard error when it is imported."""
+    sys.stderr.flush()
+    kept = os.dup(2)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 2)
+        import pybullet
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
+    return pybullet
 
 
 def _table_corners(model: RobotModel) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

@@ -1,4 +1,4 @@
-"""Registers the robot ``pybullet``."""
+"""Registers the robot cell ``pybullet``: its arms, and the simulator that folds with them."""
 
 from polyfold.plugins.hookspecs import hookimpl
 
@@ -7,3 +7,17 @@ from polyfold.plugins.hookspecs import hookimpl
 def register_robots(register):
     """Register the arms."""
     register("pybullet", "polyfold_pybullet.arms:PybulletArms", "two Pandas, a YuMi or arms by URDF, in PyBullet")
+
+
+@hookimpl
+def register_simulators(register):
+    """Register the cell."""
+    register("pybullet", "polyfold_pybullet.simulator:CellSimulator", "a robot cell: two arms and a depth camera")
+
+
+@hookimpl
+def register_commands(register):
+    """Register the verb."""
+    register(
+        "calibrate", "polyfold_pybullet.calibrating:Calibrate", "find where a camera is that looks at a board in a hand"
+    )

@@ -73,7 +73,8 @@ class FaultySimulator:
         self._grasped, self._short, self._slipped = (0,) * action.arms, (0.0,) * action.arms, (0.0,) * action.arms
         if holds.any():
             picks, places = action.picks[holds], action.places[holds]
-            self._inner.execute(Action(picks, picks + share * (places - picks)))
+            heights = None if action.heights is None else action.heights[holds]
+            self._inner.execute(Action(picks, picks + share * (places - picks), heights))
             after = self._inner.state()
             self._grasped, self._short = _among(holds, after.grasped), _among(holds, after.short)
             self._slipped = _among(holds, after.slipped)

@@ -85,10 +85,10 @@ def take_hold(
     thickness: float,
     longest_edge: float,
 ) -> Grasp | None:
-    """The particles under each pick, all layers; None if there are none.
+    """The particles under each pick, all layers above the fingers' tips; None if there are none.
 
     Args:
-        action: picks and places [px].
+        action: picks and places [px], and how deep the fingers go.
         positions: of the particles [m], shape (N, 3).
         triangles: vertex indices, shape (T, 3), by which plies are counted.
         camera: which point of the table a pixel is.
@@ -102,6 +102,8 @@ def take_hold(
         distances[arm] = np.hypot(*(positions - ray)[:, :2].T)
     nearest = distances.argmin(axis=0)
     held = distances.min(axis=0) <= reach
+    if action.heights is not None:
+        held &= positions[:, 2] >= action.heights[nearest]
     particles = np.flatnonzero(held)
     if len(particles) == 0:
         return None

@@ -25,11 +25,12 @@ class XpbdSimulator:
 
     The garment is laid with its bounding circle in the middle of the image, turned by an angle drawn from the seed.
     Grippers hold all layers within 15 mm of a pick, or farther on a coarser mesh, and lay them down at the place
-    along an arc. A pick off the cloth grasps nothing: its arm moves empty, and if no arm holds cloth the fold changes
-    nothing. Two arms that hold the same cloth part no farther than it reaches, and stop short of their places then;
-    what is stretched by a quarter slips out of a grip. The state says how many plies each arm held, how far short it
-    stopped and what share slipped. With ``guaranteed``, plies that did not at reset never pass through each other,
-    however the grippers pull; one that would have to drag cloth through cloth lags behind.
+    along an arc; an action may say how deep the fingers go, and plies below then stay. A pick off the cloth grasps
+    nothing: its arm moves empty, and if no arm holds cloth the fold changes nothing. Two arms that hold the same cloth
+    part no farther than it reaches, and stop short of their places then; what is stretched by a quarter slips out of a
+    grip. The state says how many plies each arm held, how far short it stopped and what share slipped. With
+    ``guaranteed``, plies that did not at reset never pass through each other, however the grippers pull; one that would
+    have to drag cloth through cloth lags behind.
     """
 
     class Config(BaseModel):
@@ -43,6 +44,7 @@ class XpbdSimulator:
         fill: float = Field(
             default=0.8, gt=0.1, le=1.0, description="share of the image that the garment's circle fills"
         )
+        elevation: float = Field(default=2.0, gt=0.3, le=10.0, description="height of the camera above the table [m]")
         order: int = Field(
             default=1,
             ge=0,
@@ -93,7 +95,7 @@ class XpbdSimulator:
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
         self._garment, self._seed, self._actions = garment, seed, []
         self._grasped = self._short = self._slipped = None
-        self._camera = Camera.framing(2 * radius / self.config.fill)
+        self._camera = Camera.framing(2 * radius / self.config.fill, elevation=self.config.elevation)
         self._order, mesh = _renumbered(garment.mesh, self.config.order)
         self._rank = np.argsort(self._order)
         self._solver = Solver(mesh, ((flat - centre) @ turn)[self._order], garment.fabric, self.config.guaranteed)

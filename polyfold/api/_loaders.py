@@ -91,7 +91,7 @@ def garment(
         image: photo of a real garment on a table.
         mesh: OBJ file; ``keypoints`` must be given too.
         keypoints: JSON file, keypoint name -> vertex index of the mesh.
-        size: longest side of the real garment's bounding box [m]; by default typical of the kind.
+        size: longest side of the garment's bounding box [m]; by default typical of the kind, or what the seed draws.
         edge_length: mesh size [m]; by default what suits the kind.
         fabric: what it is made of: a name, or a table with ``name`` and constants (without a name, of the usual
             fabric); by default what the experiment names.
@@ -121,9 +121,7 @@ def garment(
         raise GarmentError("keypoints belong to a mesh file; give the mesh too")
     _check_photo(image, segmenter, sheet)
     if not given:
-        if size is not None:
-            raise GarmentError("the size of a seeded garment comes from its seed; give a mask, outline, image or mesh")
-        return plugins.generate_garment(kind, seed, edge_length, experiment.fabric)
+        return plugins.generate_garment(kind, seed, edge_length, experiment.fabric, size)
     if mesh is not None:
         return replace(_from_mesh(kind, mesh, keypoints, size, edge_length), fabric=cloth)
     found = ground(

@@ -10,7 +10,7 @@ import polyfold
 from polyfold.api._photos import SEGMENTER
 from polyfold.cli._options.components import add_component_options, experiment_from
 from polyfold.cli._options.garment_source import add_sheet_option
-from polyfold.config import ComponentSpec, load_experiment
+from polyfold.config import ComponentSpec, Experiment
 
 OUTLINES = {".json", ".jsonl"}
 
@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _segmenter(arguments: argparse.Namespace) -> ComponentSpec:
     """What finds the cloth: as asked, as the configuration file says, or what suits photos."""
     named = arguments.segmenter or (
-        arguments.config and "segmenter" in load_experiment(arguments.config).model_fields_set
+        arguments.config and "segmenter" in Experiment.load(arguments.config).model_fields_set
     )
     if not named:
         arguments.segmenter = SEGMENTER

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from polyfold.errors import GarmentError
 from polyfold.plugins._host import HOST
 from polyfold.plugins._traits import MadeOf
 
@@ -15,6 +18,10 @@ if TYPE_CHECKING:
 
 FALLBACK = "poplin"
 """What kinds of garment are made of that do not say: a plain cotton weave of medium weight and stiffness."""
+
+
+SMALLEST, LARGEST = 0.1, 2.0
+"""Longest side of a garment that is asked for by its size [m]."""
 
 
 def is_usual(kind: str, spec: ComponentSpec) -> bool:
@@ -78,7 +85,11 @@ def garment_template(garment_kind: str, fabric: Fabric | None = None) -> Templat
 
 
 def generate_garment(
-    garment_kind: str, seed: int, edge_length: float | None = None, fabric: ComponentSpec | None = None
+    garment_kind: str,
+    seed: int,
+    edge_length: float | None = None,
+    fabric: ComponentSpec | None = None,
+    size: float | None = None,
 ) -> Garment:
     """The seeded garment of a kind, made of a fabric.
 
@@ -87,13 +98,26 @@ def generate_garment(
         seed: which one.
         edge_length: mesh size [m]; by default the kind's own.
         fabric: what it is made of; by default what the kind usually is.
+        size: longest side of its bounding box [m], all else in proportion; by default what the seed draws.
 
     Raises:
         PluginError: if there is no such kind or fabric.
         ConfigError: if a constant of the fabric is unknown or not plausible.
+        GarmentError: if the size is not one that two arms fold.
     """
     from polyfold.config import Experiment
 
     generator = HOST.create("garments", garment_kind)
     garment = generator.generate(seed) if edge_length is None else generator.generate(seed, edge_length)
+    if size is not None:
+        if not SMALLEST <= size <= LARGEST:
+            raise GarmentError(
+                f"a {garment_kind} of {size:g} m can't be folded here; give its longest side in metres, from "
+                f"{SMALLEST:g} to {LARGEST:g}"
+            )
+        scale = size / float(np.ptp(garment.mesh.vertices, axis=0).max())
+        if edge_length is not None:
+            garment = generator.generate(seed, edge_length / scale)
+        mesh = replace(garment.mesh, vertices=garment.mesh.vertices * scale)
+        garment = replace(garment, name=f"{garment.name}-{100 * size:.0f}cm", mesh=mesh)
     return replace(garment, fabric=make_fabric(fabric or Experiment().fabric, garment_kind))

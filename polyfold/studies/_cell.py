@@ -113,13 +113,13 @@ class _Idle:
 
 def _garment(study: Study, cell: Cell, experiment: Experiment) -> Garment:
     """The garment of an episode; variants that differ in the fabric alone share the mesh."""
-    cut = _cut(cell.garment, cell.garment_seed, study.edge_length)
+    cut = _cut(cell.garment, cell.garment_seed, study.edge_length, study.sizes.get(cell.garment))
     return replace(cut, fabric=plugins.make_fabric(experiment.fabric, cell.garment))
 
 
 @lru_cache(maxsize=8)
-def _cut(kind: str, seed: int, edge_length: float) -> Garment:
-    return plugins.generate_garment(kind, seed, edge_length)
+def _cut(kind: str, seed: int, edge_length: float, size: float | None) -> Garment:
+    return plugins.generate_garment(kind, seed, edge_length, size=size)
 
 
 def _run(study: Study, cell: Cell, entry: Task | OpenTask, accepted: Sequence[Task]) -> Episode:

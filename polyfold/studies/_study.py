@@ -11,7 +11,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -36,6 +36,8 @@ class Study(BaseModel):
         instructions: ``first`` asks with the first wording, ``in-turn`` with the next one on each garment, ``all`` with
             each of them.
         edge_length: mesh size [m].
+        sizes: longest side of garments by their kind [m], for example ``{"tshirt": 0.45}`` for a robot with short arms;
+            by default what seeds draw.
         split: only the tasks that learning baselines may train on (``seen``), or only the others (``unseen``).
         steps: only tasks of one fold (``single``), or only those of several (``multi``). Goals have neither a split nor
             a number of folds and are left out by both.
@@ -61,6 +63,7 @@ class Study(BaseModel):
     first_seed: int = Field(default=0, ge=0)
     instructions: Literal["first", "in-turn", "all"] = "in-turn"
     edge_length: float = Field(default=0.0155, gt=0.004, le=0.05)
+    sizes: dict[str, Annotated[float, Field(ge=0.1, le=2.0)]] = Field(default_factory=dict)
     split: Literal["seen", "unseen"] | None = None
     steps: Literal["single", "multi"] | None = None
     reference: Literal["oracle", "ideal"] = "ideal"

@@ -32,10 +32,13 @@ class Action:
 
     Attributes:
         picks, places: pixels, float, shape (arms, 2), arms 1 or 2.
+        heights: how high above the table the tips of each arm's fingers are when they close [m], shape (arms,); plies
+            below stay where they are. None takes all plies.
     """
 
     picks: Floats
     places: Floats
+    heights: Floats | None = None
 
     def __post_init__(self) -> None:
         picks, places = np.asarray(self.picks, float), np.asarray(self.places, float)
@@ -48,6 +51,11 @@ class Action:
             raise ActionError("picks and places must be finite pixels; one is NaN or infinite")
         object.__setattr__(self, "picks", picks)
         object.__setattr__(self, "places", places)
+        if self.heights is not None:
+            heights = np.asarray(self.heights, float)
+            if heights.shape != (len(picks),) or not np.isfinite(heights).all():
+                raise ActionError(f"heights must be {len(picks)} finite number(s), one per arm; got {heights.tolist()}")
+            object.__setattr__(self, "heights", heights)
 
     @property
     def arms(self) -> int:

@@ -358,7 +358,7 @@ def _options():
         ("fold", "a", "b"),
         ("fold", "it", "--seed", "x"),
         ("fold", "it", "--garment", "skirt"),
-        ("fold", "it", "--size", "0.5"),
+        ("fold", "it", "--size", "0.004"),
         ("fold", "it", "--mask", "a.png", "--image", "b.png"),
         ("fold", "it", "--keypoints", "a.json"),
         ("fold", "it", "--edge-length", "9"),

@@ -55,7 +55,8 @@ def test_lengths_are_told_in_centimetres(sentence, text, lengths):
 @pytest.mark.parametrize(
     ("written", "meant"),
     [("sleave", "sleeve"), ("slev", "sleeve"), ("korner", "corner"), ("bottum", "bottom"), ("tpwel", "towel"),
-     ("wayst", "waist"), ("therd", "third"), ("middel", "middle"), ("SLEEVEE", "sleeve"), ("diag", "diagonal"), ("vert", "vertical")],
+     ("wayst", "waist"), ("therd", "third"), ("middel", "middle"), ("SLEEVEE", "sleeve"),
+     ("diag", "diagonal"), ("vert", "vertical")],
 )  # fmt: skip
 def test_misspelt_words_are_brought_back(written, meant):
     assert Corrector(COMMON, WORDS).correct(f"the {written}, of the") == f"the {meant}, of the"

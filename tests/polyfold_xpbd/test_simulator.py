@@ -198,6 +198,25 @@ def test_the_state_says_how_many_plies_each_arm_held(simulator, garments):
     assert simulator.state().grasped == (2, 0)
 
 
+def test_fingers_that_close_above_a_ply_leave_it_where_it_is(simulator, garments):
+    square = garments["square"]
+    simulator.reset(square, 2)
+    simulator.execute(half_of_square(simulator))
+    folded = simulator.state()
+    corner, below = (folded.positions[folded.keypoints[name]] for name in ("bottom_left", "top_left"))
+    pick = folded.camera.to_pixels(np.array([corner]))
+    back = pick + np.array([0.0, 80.0])
+    for height, plies in ((square.fabric.thickness, 1), (0.0, 2), (0.01, 0)):
+        simulator.restore(folded)
+        simulator.execute(Action(pick, back, np.array([height])))
+        after = simulator.state()
+        assert after.grasped == (plies,)
+        stayed = np.linalg.norm(after.positions[after.keypoints["top_left"]] - below)
+        went = np.linalg.norm(after.positions[after.keypoints["bottom_left"]] - corner)
+        assert (went > 0.05) == (plies > 0)
+        assert (stayed > 0.05) == (plies > 1)
+
+
 def test_arms_that_hold_the_same_cloth_part_no_farther_than_it_reaches(simulator, garments):
     simulator.reset(garments["square"], 2)
     simulator.execute(half_of_square(simulator))

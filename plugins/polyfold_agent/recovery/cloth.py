@@ -19,8 +19,9 @@ def reach(mask: Mask, line: FoldLine) -> float:
 
 
 def heights(observation: Observation, mask: Mask) -> NDArray[np.float32]:
-    """Height of the cloth above the table [m], 0 beside it, shape (H, W)."""
-    return np.where(mask, np.maximum(observation.camera.elevation - observation.depth, 0.0), 0.0).astype(np.float32)
+    """Height of the cloth above the table [m], shape (H, W); 0 beside it and where no depth was measured."""
+    above = np.nan_to_num(observation.camera.elevation - observation.depth)
+    return np.where(mask, np.maximum(above, 0.0), 0.0).astype(np.float32)
 
 
 def near(point: ArrayLike, radius: float, among: Mask) -> Mask:

@@ -13,6 +13,8 @@ OFFSETS = np.deg2rad([0.0, 20.0, -20.0, 40.0, -40.0, 65.0, -65.0, 90.0])
 """By how much hands may be turned from where they would be best [rad], in the order of trying."""
 LEAN = float(np.deg2rad(20))
 """How far a hand leans outwards where one that points straight down does not reach [rad]."""
+PAD = 0.009
+"""Half of a finger's breadth [m]: where a hand leans, the edge of its fingers is lower than their middle."""
 LIFT, HIGHEST = 0.4, 0.25
 """Height of the arc as a share of the way from pick to place; upper limit [m]."""
 
@@ -61,7 +63,8 @@ def wide_sides(picks: Floats, places: Floats) -> Iterator[tuple[float, float]]:
 def leaning_out(poses: Floats, base: Floats, angle: float) -> Floats:
     """Poses at the same places of a tool that points away from the arm's base, so that it reaches farther.
 
-    Its wide side lies across the way out: of a hand that leans to a side, one finger would be in the table.
+    Its wide side lies across the way out: of a hand that leans to a side, one finger would be in the table. It is
+    raised so that the lower edge of its fingers is as high as their tips were.
 
     Args:
         poses: of a tool that points down, shape (T, 4, 4).
@@ -78,6 +81,7 @@ def leaning_out(poses: Floats, base: Floats, angle: float) -> Floats:
         ahead = np.array([np.cos(out), np.sin(out), 0.0])
         approach = np.cos(angle) * new[:3, 2] + np.sin(angle) * ahead
         new[:3, 0], new[:3, 2] = np.cross(new[:3, 1], approach), approach
+        new[2, 3] += PAD * np.sin(angle)
     return leaning
 
 

@@ -8,7 +8,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
-from polyfold.config import USUAL, ComponentSpec, Experiment, load_experiment
+from polyfold.config import USUAL, ComponentSpec, Experiment
 from polyfold.errors import ConfigError
 
 KINDS = tuple(name for name, field in Experiment.model_fields.items() if field.annotation is ComponentSpec)
@@ -47,7 +47,7 @@ def add_component_options(
 
 def experiment_from(arguments: argparse.Namespace) -> Experiment:
     """The experiment that the options describe. Raises ConfigError naming the wrong option."""
-    experiment = load_experiment(arguments.config) if arguments.config else Experiment()
+    experiment = Experiment.load(arguments.config) if arguments.config else Experiment()
     given = {name: getattr(arguments, name, None) for name in (*KINDS, "guidance")}
     experiment = experiment.override({name: value for name, value in given.items() if value})
     for assignment in arguments.set:

@@ -30,7 +30,7 @@ def add_source_options(parser: argparse.ArgumentParser) -> None:
     )
     add_sheet_option(twin)
     twin.add_argument("--keypoints", type=Path, metavar="JSON", help="keypoint name -> vertex index of the mesh")
-    twin.add_argument("--size", type="metres", metavar="METRES", help="longest side of the real garment's bounding box")
+    twin.add_argument("--size", type="metres", metavar="METRES", help="longest side of the garment's bounding box")
 
 
 def add_sheet_option(parser: argparse._ActionsContainer) -> None:

@@ -1,0 +1,249 @@
+"""The simulator ``pybullet``: cloth as another simulator has it, seen and folded by a cell as it really would be."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field
+
+from polyfold.errors import GroundingError
+from polyfold.garments import Garment
+from polyfold.plugins import create
+from polyfold.plugins.hardware import Infeasible, RobotPlan
+from polyfold.plugins.interfaces import RecordsMotion
+from polyfold.types import Action, Observation, SimState
+from polyfold_pybullet.arms import PybulletArms
+from polyfold_pybullet.depth_noise import DepthNoise
+
+if TYPE_CHECKING:
+    from polyfold_pybullet.depth_noise import NoisyDepth
+    from polyfold_pybullet.looking import Eye
+
+Floats = NDArray[np.float64]
+
+_log = logging.getLogger(__name__)
+
+NEAR_PICK = 0.015
+"""Cloth so near to a pick lies between the fingers [m]."""
+
+
+@dataclass(frozen=True)
+class Grip:
+    """What became of one arm's grip.
+
+    Attributes:
+        tip: height of the fingers' tips when they closed [m].
+        taken, left: particles between the fingers that were taken, and that lay lower and stayed.
+        off: how far from what was meant the tool was, along the table [m].
+    """
+
+    tip: float
+    taken: int
+    left: int
+    off: float
+
+
+@dataclass(frozen=True)
+class CellFold:
+    """What became of one fold in the cell.
+
+    Attributes:
+        mode: ``at once``, ``in sequence``, ``one arm``, ``infeasible`` or ``not seen``.
+        seconds: how long the arms moved [s].
+        reason: why it was not done; empty if it was.
+        grips: of each arm.
+    """
+
+    mode: str
+    seconds: float = 0.0
+    reason: str = ""
+    grips: tuple[Grip, ...] = ()
+
+
+class CellSimulator:
+    """Runs another simulator's cloth in a robot cell. Implements :class:`polyfold.plugins.interfaces.Simulator`.
+
+    Pictures have the depth of a D435i. Picks and places go from pixels and measured depth, through a camera that was
+    calibrated with errors of its own, to the arms' world; a fold is planned free of collisions before anything moves,
+    by both arms at once or else one after the other. Fingers close a bite below the surface that was measured, but not
+    in the table: what was measured too high is missed, and of a thick packet the lower plies stay. A fold that can't be
+    planned, or a pick without depth, leaves the cloth as it is; why stands in the log and, with what became of each
+    fold, in the state's ``extra["cell"]``.
+    """
+
+    class Config(BaseModel):
+        """The cell: its cloth, arms, camera and grippers."""
+
+        model_config = ConfigDict(frozen=True, extra="forbid")
+
+        cloth: str = Field(default="xpbd", description="the simulator of the cloth")
+        cloth_params: dict[str, Any] = Field(
+            default={"elevation": 0.9}, description="its parameters; the camera is as high as it says"
+        )
+        arms: PybulletArms.Config = Field(default=PybulletArms.Config(), description="which arms, and how they move")
+        noise: DepthNoise = Field(default=DepthNoise(), description="errors of the depth camera")
+        frames: int = Field(default=5, ge=1, le=100, description="pictures averaged before a fold")
+        views: int = Field(
+            default=20, ge=0, le=200, description="views of a board by which the camera is calibrated; 0: it is exact"
+        )
+        bite: float = Field(
+            default=0.01, ge=0, le=0.05, description="how far below the measured surface the fingers close [m]"
+        )
+
+    @classmethod
+    def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:
+        """The simulator that references are made in: its grippers go where they should."""
+        return config.cloth, dict(config.cloth_params)
+
+    def __init__(self, config: Config | None = None) -> None:
+        self.config = config or self.Config()
+        self._cloth: Any = create("simulators", self.config.cloth, self.config.cloth_params)
+        self._arms = PybulletArms(self.config.arms)
+        self._eye: Eye | None = None
+        self._depth: NoisyDepth | None = None
+        self._folds: tuple[CellFold, ...] = ()
+        self._told: tuple[tuple[int, ...], tuple[float, ...], tuple[float, ...]] | None = None
+
+    def reset(self, garment: Garment, seed: int) -> Observation:
+        """Lay the garment flat in a pose drawn from ``seed``, calibrate the camera, and return the first picture."""
+        from polyfold_pybullet.depth_noise import NoisyDepth
+        from polyfold_pybullet.views import calibrated_eye
+
+        seen = self._cloth.reset(garment, seed)
+        self._arms.connect()
+        self._arms.park()
+        self._eye = calibrated_eye(seen.camera, self.config.views, seed)
+        self._depth = NoisyDepth(self.config.noise, seen.camera.height, seen.camera.width, seed)
+        self._folds, self._told = (), None
+        return self._measured(seen)
+
+    def observe(self) -> Observation:
+        """Take a picture, the arms parked out of view."""
+        return self._measured(self._cloth.observe())
+
+    def execute(self, action: Action) -> Observation:
+        """Plan the fold and do it with whatever goes wrong."""
+        seen = self._cloth.observe()
+        action.check_inside(seen.camera)
+        try:
+            picks, places = self._located(action, seen)
+        except GroundingError as error:
+            return self._not_done(action, CellFold("not seen", reason=str(error)))
+        plan = self._arms.plan(picks, places)
+        if isinstance(plan, Infeasible):
+            return self._not_done(action, CellFold("infeasible", reason=plan.reason))
+        self._do(action, plan, picks, places)
+        return self.observe()
+
+    def record(self, recorder: Callable[[Observation], Any], frames_per_second: float = 15.0) -> None:
+        """Pass on pictures of the cloth's motion, if its simulator can."""
+        if isinstance(self._cloth, RecordsMotion):
+            self._cloth.record(recorder, frames_per_second)
+
+    def state(self) -> SimState:
+        """Privileged state; ``extra["cell"]`` says what became of each fold."""
+        state = self._cloth.state()
+        extra = {**state.extra, "cell": tuple(asdict(fold) for fold in self._folds)}
+        if self._told is None:
+            return replace(state, extra=extra)
+        grasped, short, slipped = self._told
+        return replace(state, extra=extra, grasped=grasped, short=short, slipped=slipped)
+
+    def restore(self, state: SimState) -> None:
+        """Return to a state of this garment."""
+        self._folds = tuple(_cell_fold(fold) for fold in state.extra.get("cell", ()))
+        told = state.grasped, state.short, state.slipped
+        self._told = None if None in told else told  # type: ignore[assignment]
+        self._cloth.restore(state)
+
+    def close(self) -> None:
+        """Release cloth and cell."""
+        self._arms.close()
+        self._cloth.close()
+
+    def _measured(self, seen: Observation) -> Observation:
+        if self._depth is None:
+            return seen
+        return replace(seen, depth=self._depth.measure(seen.depth))
+
+    def _located(self, action: Action, seen: Observation) -> tuple[Floats, Floats]:
+        """Where the fingers close and where they let go in the arms' world [m], shape (arms, 3) each.
+
+        Heights are counted from the table, which the arms know better than the camera does.
+        """
+        from polyfold_pybullet.looking import Surface
+
+        assert self._depth is not None
+        assert self._eye is not None
+        surface = Surface.of(self._depth.measure(seen.depth, self.config.frames))
+        found = []
+        for pixels in (action.picks, action.places):
+            above, table = np.array([surface.at(pixel) for pixel in pixels]).T
+            where = self._eye.places(pixels, table - above)
+            found.append(np.column_stack([where[:, :2], np.maximum(above, 0.0)]))
+        picks, places = found
+        picks[:, 2] = np.maximum(picks[:, 2] - self.config.bite, 0.0) if action.heights is None else action.heights
+        places[:, 2] += picks[:, 2]
+        return picks, places
+
+    def _do(self, action: Action, plan: RobotPlan, picks: Floats, places: Floats) -> None:
+        """Move the arms as planned, and the cloth with them: at once, or one pick after the other."""
+        camera = self._cloth.state().camera
+        self._arms.execute(plan)
+        grips: list[Grip] = []
+        told: list[tuple[int, float, float]] = []
+        for chosen in _turns(plan, action.arms):
+            tips = picks[chosen, 2]
+            moved = Action(
+                _inside(camera.to_pixels(picks[chosen]), camera),
+                _inside(camera.to_pixels(places[chosen]), camera),
+                tips,
+            )
+            before = self._cloth.state().positions
+            self._cloth.execute(moved)
+            after = self._cloth.state()
+            meant = camera.to_world(action.picks[chosen])
+            grips += [
+                _grip(before, pick, float(np.hypot(*(pick - goal)[:2])))
+                for pick, goal in zip(picks[chosen], meant, strict=True)
+            ]
+            nothing = (0,) * len(tips)
+            told += list(zip(after.grasped or nothing, after.short or nothing, after.slipped or nothing, strict=True))
+        self._folds += (CellFold(plan.mode, round(plan.duration, 2), grips=tuple(grips)),)
+        grasped, short, slipped = zip(*told, strict=True)
+        self._told = grasped, short, slipped
+
+    def _not_done(self, action: Action, fold: CellFold) -> Observation:
+        _log.warning("a fold is left out: %s", fold.reason)
+        self._folds += (fold,)
+        self._told = (0,) * action.arms, (0.0,) * action.arms, (0.0,) * action.arms
+        return self.observe()
+
+
+def _turns(plan: RobotPlan, arms: int) -> Iterator[list[int]]:
+    """Which picks are done together, in order."""
+    if plan.mode == "in sequence":
+        yield from ([k] for k in range(arms))
+    else:
+        yield list(range(arms))
+
+
+def _grip(positions: Floats, pick: Floats, off: float) -> Grip:
+    """What fingers at a point take of cloth whose particles are at positions [m], shape (N, 3)."""
+    between = np.hypot(*(positions - pick)[:, :2].T) <= NEAR_PICK
+    taken = positions[between, 2] >= pick[2]
+    return Grip(round(float(pick[2]), 5), int(taken.sum()), int((~taken).sum()), round(off, 5))
+
+
+def _cell_fold(told: dict[str, Any]) -> CellFold:
+    return CellFold(**{**told, "grips": tuple(Grip(**grip) for grip in told["grips"])})
+
+
+def _inside(pixels: Floats, camera: Any) -> Floats:
+    """Pixels no farther out than the picture reaches: what a camera's error puts outside is at its edge."""
+    return np.clip(pixels, 0.0, [camera.width - 1.0, camera.height - 1.0])
