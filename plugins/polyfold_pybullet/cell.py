@@ -86,6 +86,7 @@ class Cell:
         self.model = model
         self.clearances = clearances or Clearances()
         self._client: int | None = None
+        self._cloth: int | None = None
         self.arms: list[_Body] = []
         self._obstacles: list[tuple[str, _Body]] = []
         self._bounds: list[tuple[int, Sequence[float], Sequence[float]]] = []
@@ -113,7 +114,7 @@ class Cell:
         if self._client is not None:
             self._bullet.disconnect(self._client)
             self._client = None
-        self.arms, self._obstacles = [], []
+        self.arms, self._obstacles, self._cloth = [], [], None
 
     def __enter__(self) -> Cell:
         return self.open()
@@ -182,6 +183,26 @@ class Cell:
             return None
         one, other, distance = min(found, key=lambda near: near[2])
         return Near(self._name(0, one), self._name(1, other), distance)
+
+    def drape(
+        self, vertices: ArrayLike, triangles: ArrayLike, colour: tuple[float, float, float] = (0.7, 0.3, 0.3)
+    ) -> None:
+        """Show cloth in pictures, in place of what was shown before; it is in nothing's way.
+
+        Args:
+            vertices: where it is [m], shape (N, 3).
+            triangles: vertex indices, shape (T, 3); seen from both sides.
+            colour: RGB, 0 to 1.
+        """
+        bullet, client = self._bullet, self.client
+        if self._cloth is not None:
+            bullet.removeBody(self._cloth, physicsClientId=client)
+        one_side = np.asarray(triangles, int)
+        shown = bullet.createVisualShape(
+            bullet.GEOM_MESH, vertices=np.asarray(vertices, float).tolist(), rgbaColor=(*colour, 1.0),
+            indices=np.concatenate([one_side, one_side[:, ::-1]]).ravel().tolist(), physicsClientId=client,
+        )  # fmt: skip
+        self._cloth = bullet.createMultiBody(0, -1, shown, physicsClientId=client)
 
     def picture(
         self,

@@ -21,7 +21,7 @@ class Observation:
 
     Attributes:
         rgb: colours, uint8, shape (H, W, 3).
-        depth: distance along the optical axis [m], float32, shape (H, W).
+        depth: distance along the optical axis [m], float32, shape (H, W); NaN where a camera measured none.
         camera: the camera that took it.
     """
 

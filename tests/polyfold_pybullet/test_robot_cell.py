@@ -119,3 +119,18 @@ def test_the_picture_shows_the_arms_over_the_table(pandas):
     assert here.shape == (120, 160, 3)
     assert here.dtype == np.uint8
     assert (here != away).any(axis=2).mean() > 0.02
+
+
+def test_cloth_is_shown_where_it_is_and_stands_in_nothing_s_way():
+    corners = np.array([[-0.2, 0.0, 0.01], [0.2, 0.0, 0.01], [0.2, 0.2, 0.01], [-0.2, 0.2, 0.01]])
+    shown = []
+    with Cell(panda()) as cell:
+        bare = cell.picture(160, 120).astype(int)
+        for height in (0.0, 0.1):
+            cell.drape(corners + np.array([0.0, 0.0, height]), [[0, 2, 1], [0, 3, 2]], (0.9, 0.1, 0.1))
+            seen = cell.picture(160, 120).astype(int)
+            red = seen[..., 0] - seen[..., 1:].max(axis=-1) > 60
+            shown.append(red & (np.abs(seen - bare).max(axis=-1) > 60))
+            assert cell.near_obstacles(0, cell.model.arms[0].home) is None
+    assert min(shown[0].sum(), shown[1].sum()) > 150
+    assert (shown[0] & ~shown[1]).sum() > 30
