@@ -192,6 +192,32 @@ def test_another_garment_or_part_is_no_order_for_this_one(text):
     assert program_of_order(text, Garment("tshirt", "tshirt")) is None
 
 
+@pytest.mark.parametrize(
+    ("kind", "text", "meant"),
+    [
+        ("tshirt", "Fold the hem upward by 4 cm.", "fold the bottom strip of 4 cm upward to the rest"),
+        ("pants", "turn up the cuffs by six centimetres", "fold the bottom strip of 6 cm upward to the rest"),
+        ("pants", "Please fold the waistband down 30 mm", "fold the top strip of 3 cm downward to the rest"),
+        ("square", "turn the left edge in by 20 %", "fold the left fifth rightward to the middle along the fifth line"),
+    ],
+)
+def test_a_strip_in_few_words_is_read_to_the_letter(kind, text, meant):
+    from polyfold_offline.cloth.folds import say
+    from polyfold_offline.cloth.garment import Garment
+    from polyfold_offline.reading.reader import Reader
+
+    (fold,) = Reader(FOLDER, sure=1.0).folds(text, Garment(kind, kind, {}, (50, 70))).folds
+    assert say(fold, kind) == meant
+
+
+@pytest.mark.parametrize(
+    "text", ["Every corner to the middle, then the same again.", "All four corners to the centre, twice."]
+)
+def test_a_second_round_of_corners_is_refused_and_not_dropped(planner, llm, text):
+    with pytest.raises(RefusedError):
+        plan_ideally(text, laid_garment("square", 2001), planner, llm)
+
+
 def test_lengths_reach_the_fold_line(planner, llm):
     laid = laid_garment("square", 2001)
     (line,) = plan_ideally("turn up a strip of 5 cm along the bottom edge", laid, planner, llm)

@@ -37,14 +37,15 @@ _STRIP = re.compile(r"fold the (?P<edge>left|right|top|bottom) strip of (?P<cm>\
 
 
 def program_of_order(sentence: str, garment: Garment) -> Program | None:
-    """The program of an order in the fewest words; None of any other.
+    """The program of an order in the fewest words, its first length marked ``#1``; None of any other.
 
     Of the garment alone, *fold the shirt*, *fold it in half twice*; of a part and where it goes, *fold the bottom up*,
-    *fold the left sleeve*; of an edge and the opposite one, *fold the left edge onto the right edge*. They hold too few
-    words for a network to be sure of any: one name of a garment more or less decides.
+    *fold the left sleeve*; of an edge and the opposite one, *fold the left edge onto the right edge*; of a strip, *turn
+    up the hem by 4 cm*. They hold too few words for a network to be sure of any: one name of a garment more or less
+    decides.
     """
     words = " ".join(sentence.split())
-    readers = (_program_of_garment, _program_of_part, _program_of_edges)
+    readers = (_program_of_garment, _program_of_part, _program_of_edges, _program_of_strip)
     return next((program for read in readers if (program := read(words, garment)) is not None), None)
 
 
@@ -81,6 +82,17 @@ def _program_of_part(words: str, garment: Garment) -> Program | None:
     return None
 
 
+def _program_of_strip(words: str, garment: Garment) -> Program | None:
+    order = _OF_STRIP.fullmatch(words)
+    if order is None:
+        return None
+    edge = _STRIP_EDGES.get(garment.family, {}).get(order["edge"].lower(), order["edge"].lower().split()[0])
+    ways = {order[name].lower().removesuffix("s").removesuffix("ward") for name in ("way", "then") if order[name]}
+    if edge not in EDGES or ways - {"over", "in", *(way.removeprefix("to the ") for way in _AWAY_FROM[edge])}:
+        return None
+    return (Piece("strip", edge[0].upper(), "#1"),)
+
+
 _ANY_WAY = ("over", "across")
 _AWAY_FROM = {
     "left": ("right", "to the right"), "right": ("left", "to the left"), "top": ("down",), "bottom": ("up",),
@@ -94,6 +106,23 @@ _OF_PART = re.compile(
     r"(?:please,? )?fold (?:(?:the )?(?P<edge>left|right|top|bottom)(?: (?:edge|side|half|end))?"
     r"|(?:the )?(?P<sleeve>left|right|the|both|both the) sleeves?|(?P<corners>(?:all )?(?:the )?(?:four )?corners))"
     rf"(?: (?P<way>{_WAYS}))?(?:,? please)?[.!]?",
+    re.IGNORECASE,
+)
+
+
+_STRIP_EDGES = {
+    "tshirt": dict.fromkeys(("hem", "bottom hem", "lower hem"), "bottom"),
+    "pants": {
+        **dict.fromkeys(("hems", "cuffs", "leg ends", "ends of the legs", "trouser legs", "ankles"), "bottom"),
+        **dict.fromkeys(("waist", "waistband"), "top"),
+    },
+}
+"""What edges along which strips are turned over are called besides left, right, top and bottom edge."""
+
+_OF_STRIP = re.compile(
+    r"(?:please,? )?(?:fold|turn|flip) (?:(?P<way>over|in|up|down) )?(?:the )?"
+    r"(?P<edge>(?:left|right|top|bottom)(?: (?:edge|side))?|[a-z ]*?(?:hems?|cuffs|ends|legs|ankles|waist|waistband))"
+    r"(?: (?P<then>over|in|inwards?|up|upwards?|down|downwards?))? (?:by )?#1 cm(?:,? please)?[.!]?",
     re.IGNORECASE,
 )
 

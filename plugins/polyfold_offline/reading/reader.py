@@ -87,12 +87,14 @@ class Reader:
             return [Reading((Piece("no", "action"),), None, REASONS["action"], 1.0)]
         if _TAKEN_BACK.search(sentence):
             return [Reading((Piece("no", "contradiction"),), None, "it takes back what it asks for", 1.0)]
-        if (program := program_of_order(sentence, garment)) is not None:
-            return [Reading(program, folds_of(program, (), garment), "", 1.0)]
         read = take_lengths(_in_known_words(sentence, garment))
+        if (program := program_of_order(read.text, garment)) is not None:
+            return [_read_to_the_letter(program, read, garment)]
         candidates = likeliest(self._network, self._pieces.read(read.text, garment.family), garment.family)
         if _SAME_AGAIN.search(read.text) and not _OTHER_WAY.search(read.text):
             candidates = [replace(candidate, program=_same_again(candidate.program)) for candidate in candidates]
+        if _ONCE_MORE.search(read.text):
+            candidates = [replace(candidate, program=_not_one_round(candidate.program)) for candidate in candidates]
         return _together(candidates if _SECOND_STATEMENT.search(read.text) else _consistent(candidates), read, garment)
 
     def _doubt(self, sentence: str, garment: Garment, readings: Sequence[Reading]) -> str:
@@ -144,6 +146,11 @@ _OTHER_WAY = re.compile(
 )
 """A fold that is to be done again goes the same way as before, unless another way is spoken of."""
 
+_ONCE_MORE = re.compile(
+    r"\b(?:again|once more|twice|repeat|(?:second|one more|another) time|two rounds)\b", re.IGNORECASE
+)
+_CORNERS = {Piece("centre", corner) for corner in ("BL", "TL", "TR", "BR")}
+
 _SECOND_STATEMENT = re.compile(
     r"[,;:!?\n]|\.(?=\s*\w)|\b(?:and|but|while|whilst|yet|although|though|without|also|same|only|just|both|one|once|single|or|"
     r"stay|stays|keep|keeping|leave|leaving|at|not|don't|never)\b",
@@ -156,6 +163,13 @@ _MANY_CLAUSES = 8
 _LONG = 25
 
 
+def _read_to_the_letter(program: Program, read: Read, garment: Garment) -> Reading:
+    try:
+        return Reading(program, folds_of(program, read.lengths, garment), "", 1.0)
+    except NotUnderstoodError as error:
+        return Reading(program, None, str(error), 1.0)
+
+
 def _same_again(program: Program) -> Program:
     """A half fold along an edge that is named, then one whose way is left open: along the same edge."""
     found = list(program)
@@ -163,6 +177,11 @@ def _same_again(program: Program) -> Program:
         if piece == Piece("half", "any") and before.operation == "half" and before.place != "any":
             found[number] = found[number - 1]
     return tuple(found)
+
+
+def _not_one_round(program: Program) -> Program:
+    """All corners to the centre is not what somebody means who asks for a second round; that has no program."""
+    return (Piece("no", "impossible"),) if len(program) == len(_CORNERS) and set(program) == _CORNERS else program
 
 
 def _consistent(candidates: Sequence[Candidate]) -> list[Candidate]:
