@@ -198,7 +198,7 @@ def test_another_garment_or_part_is_no_order_for_this_one(text):
         ("tshirt", "Fold the hem upward by 4 cm.", "fold the bottom strip of 4 cm upward to the rest"),
         ("pants", "turn up the cuffs by six centimetres", "fold the bottom strip of 6 cm upward to the rest"),
         ("pants", "Please fold the waistband down 30 mm", "fold the top strip of 3 cm downward to the rest"),
-        ("square", "turn the left edge in by 20 %", "fold the left fifth rightward to the middle along the fifth line"),
+        ("square", "turn the left edge in by 8 cm", "fold the left strip of 8 cm rightward to the rest"),
     ],
 )
 def test_a_strip_in_few_words_is_read_to_the_letter(kind, text, meant):
