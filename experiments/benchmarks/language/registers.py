@@ -264,10 +264,13 @@ def draw_curve(found: Sequence[Answer], path: Path) -> None:
     figure = Figure(figsize=(5.2, 3.6), layout="constrained")
     axes = figure.subplots()
     axes.plot(points[:, 1], points[:, 0], color="#1f5f8b")
-    for least in THRESHOLDS:
+    for number, least in enumerate(THRESHOLDS):
         right, silent, _ = shares_at(least, found)
         axes.plot(silent, right, "o", color="#1f5f8b", markersize=4)
-        axes.annotate(f" {least:g}", (silent, right), fontsize=8, va="top")
+        below = 6 + 9 * (number % 3)  # neighbours lie close together
+        axes.annotate(
+            f"{least:g}", (silent, right), (0, -below), textcoords="offset points", fontsize=7, ha="center", va="top"
+        )
     axes.set(xlabel="another fold than was meant [%]", ylabel="right [%]", xlim=(0, None), ylim=(0, 100))
     axes.grid(alpha=0.3)
     figure.savefig(path, dpi=120)
