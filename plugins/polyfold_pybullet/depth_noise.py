@@ -63,17 +63,19 @@ class NoisyDepth:
 
         Args:
             depth: true distance along the optical axis [m], shape (H, W); what is not finite or positive is not seen.
-            frames: so many pictures are averaged; a pixel without depth in one of them has none.
+            frames: so many pictures are averaged, those in which a pixel has depth.
 
         Returns:
             Distance [m], NaN where none was measured, shape (H, W).
         """
         true = np.asarray(depth, np.float64)
         seen = np.isfinite(true) & (true > 0)
-        total = np.zeros(self._shape)
+        total, count = np.zeros(self._shape), np.zeros(self._shape)
         for _ in range(frames):
-            total += self._once(np.where(seen, true, 1.0))
-        measured = total / frames + self._noise.bias * self._plane
+            once = self._once(np.where(seen, true, 1.0))
+            total += np.nan_to_num(once)
+            count += np.isfinite(once)
+        measured = np.where(count > 0, total / np.maximum(count, 1), np.nan) + self._noise.bias * self._plane
         measured[~seen | self._edges(true, seen)] = np.nan
         return measured.astype(np.float32)
 

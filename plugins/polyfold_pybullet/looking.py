@@ -12,8 +12,8 @@ from polyfold.geometry import Camera
 
 Floats = NDArray[np.float64]
 
-AROUND = 3
-"""Depth is the median of pixels so far around [px]."""
+AROUND = (3, 6, 12)
+"""Depth is the median of pixels so far around [px]; of those farther off where too few of the nearer were measured."""
 SEEN = 0.3
 """Share of those pixels that must have been measured."""
 LOWEST, HIGHEST = -0.02, 0.15
@@ -94,8 +94,9 @@ class Surface:
         x, y = np.asarray(pixel, float)
         height, width = self.depth.shape
         column, row = int(np.clip(round(x), 0, width - 1)), int(np.clip(round(y), 0, height - 1))
-        window = self.depth[max(0, row - AROUND) : row + AROUND + 1, max(0, column - AROUND) : column + AROUND + 1]
-        if np.isfinite(window).mean() < SEEN:
+        windows = (self.depth[max(0, row - r) : row + r + 1, max(0, column - r) : column + r + 1] for r in AROUND)
+        window = next((window for window in windows if np.isfinite(window).mean() >= SEEN), None)
+        if window is None:
             raise GroundingError(f"there is no depth around the pixel ({x:.0f}, {y:.0f}); look again")
         table = float(self.table @ [1.0, x, y])
         above = table - float(np.nanmedian(window))
