@@ -5,7 +5,7 @@ from __future__ import annotations
 import fnmatch
 import hashlib
 import itertools
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from polyfold import plugins
@@ -46,11 +46,12 @@ def _check_metrics(study: Study) -> None:
         plugins.create("metrics", name, params)
 
 
-def _check_sizes(study: Study, kinds: Collection[str]) -> None:
-    """Raises ConfigError if a size is given for a kind of garment that the study has not."""
+def _check_sizes(study: Study) -> None:
+    """Raises ConfigError if a size is given for a kind of garment that the suite has not."""
+    kinds = {task.garment for task in suite(study.suite).entries}
     for kind in study.sizes:
         if kind not in kinds:
-            raise ConfigError(f"sizes names {kind!r}, of which the study has no task; {did_you_mean(kind, kinds)}")
+            raise ConfigError(f"sizes names {kind!r}, of which {study.suite} has no task; {did_you_mean(kind, kinds)}")
 
 
 def _agent_seed(study: Study, task: Task | OpenTask, garment_seed: int, wording: int) -> int:
@@ -63,7 +64,7 @@ def cells(study: Study) -> Iterator[Cell]:
     """Every episode of a study, in a fixed order that mixes kinds, so that progress is representative."""
     _check_metrics(study)
     chosen = _chosen_tasks(study)
-    _check_sizes(study, {task.garment for task in chosen})
+    _check_sizes(study)
     for index in range(study.garments):
         for task, variant in itertools.product(chosen, study.variants):
             garment_seed = study.first_seed + index

@@ -95,7 +95,7 @@ def test_crossed_picks_are_taken_by_the_arms_they_are_near(planner):
 
 
 def test_what_both_arms_can_not_do_at_once_they_do_one_after_the_other(planner):
-    plan = planner.plan([[0.05, 0.05, Z], [0.05, 0.12, Z]], [[-0.15, 0.05, Z], [-0.15, 0.12, Z]])
+    plan = planner.plan([[0.05, 0.05, Z], [0.05, 0.08, Z]], [[-0.15, 0.05, Z], [-0.15, 0.08, Z]])
     assert plan.mode == "in sequence"
     closed = [moved.closed for moved in plan.motions if moved.name == "carry"]
     assert len(closed) == 2
@@ -127,3 +127,19 @@ def test_the_same_fold_is_planned_alike(half, planner):
 def test_picks_that_are_no_points_are_refused(planner, picks):
     with pytest.raises(ActionError, match="in metres"):
         planner.plan(picks, picks)
+
+
+def test_tools_that_are_near_to_each_other_lean_apart(planner):
+    picks, places = [[-0.05, 0.02, 0.0], [0.05, 0.02, 0.0]], [[-0.05, 0.16, 0.0], [0.05, 0.16, 0.0]]
+    plan = planner.plan(picks, places)
+    assert isinstance(plan, FoldPlan)
+    assert plan.mode == "at once"
+    carry = next(motion for motion in plan.motions if motion.name == "carry")
+    wrists = []
+    for arm, joints in enumerate(carry.joints):
+        tool = planner.kinematics[arm].forward(joints[0])
+        lean = np.degrees(np.arccos(-tool[2, 2]))
+        assert lean == pytest.approx(20, abs=2)
+        wrists.append(tool[:3, 3] - 0.1 * tool[:3, 2])
+    tips = [planner.kinematics[arm].forward(joints[0])[:3, 3] for arm, joints in enumerate(carry.joints)]
+    assert np.linalg.norm(wrists[0] - wrists[1]) > np.linalg.norm(tips[0] - tips[1]) + 0.05

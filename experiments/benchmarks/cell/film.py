@@ -83,7 +83,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("cell.gif"))
     options = parser.parse_args(arguments)
     garment = generate_garment(options.garment, options.seed, 0.012, size=options.size)
-    simulator = FilmedCell(CellSimulator.Config(arms={"robot": options.robot}))
+    simulator = FilmedCell(CellSimulator.Config.model_validate({"arms": {"robot": options.robot}}))
     try:
         run_episode(Experiment(), garment, options.sentence, options.seed, simulator=simulator)
     finally:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from polyfold_pybullet.cell import Cell
 from polyfold_pybullet.kinematics import Kinematics, OutOfReach
-from polyfold_pybullet.planning.grasping import LEAN, carried, leaning_out
+from polyfold_pybullet.planning.grasping import LEAN, away_from, carried, leaning
 from polyfold_pybullet.planning.timing import Path
 
 Floats = NDArray[np.float64]
@@ -57,8 +57,16 @@ class ArmWays:
         self.why, self.stage = "", 0
         self._known: dict[Carry, bool] = {}
 
-    def carries(self, pick: Floats, place: Floats, yaws: tuple[float, float]) -> list[Carry]:
+    def carries(
+        self, pick: Floats, place: Floats, yaws: tuple[float, float], inwards: Floats | None = None
+    ) -> list[Carry]:
         """Ways to carry, those nearest to home first, with the hand as asked or turned by half a turn.
+
+        Args:
+            pick, place: [m], shape (3,).
+            yaws: how the hand is turned at pick and place [rad].
+            inwards: where a hand that leans points, unit vectors, shape (3 * ROWS, 2); by default hands lean only where
+                they would not reach otherwise.
 
         They are not yet looked at for collisions: :meth:`clear` does. After none, ``why`` says what stood in the way.
         """
@@ -67,7 +75,8 @@ class ArmWays:
         base = self._kinematics.chain.origins[0][:3, 3]
         for half in (0.0, np.pi):
             down = carried(pick, place, (yaws[0] + half, yaws[1] + half), self._hover, ROWS)
-            for poses in (down, leaning_out(down, base, LEAN)):
+            out = leaning(down, away_from(down, base), LEAN)
+            for poses in (down, out) if inwards is None else (leaning(down, inwards, LEAN),):
                 reach = self._out_of_reach(poses)
                 if reach is not None:
                     self.why = self.why or reach

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import product
+from itertools import islice, product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,13 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 from polyfold.errors import ActionError
 from polyfold.plugins.hardware import Infeasible
 from polyfold_pybullet.cell import Cell
-from polyfold_pybullet.planning.carrying import STEP, Carry, parts
-from polyfold_pybullet.planning.grasping import wide_sides
+from polyfold_pybullet.planning.carrying import ROWS, STEP, Carry, parts
+from polyfold_pybullet.planning.grasping import apart, wide_sides
 from polyfold_pybullet.planning.moves import Failure, Moves, PlannerConfig, backwards
 from polyfold_pybullet.planning.plans import FoldPlan, Motion
 
 Floats = NDArray[np.float64]
 
+NEAR = 0.25
+"""Tools so near to each other [m] may lean apart, for the wrists are wider than the fingers."""
 CARRIES = 4
 """How many carries are tried for each turn of the hands."""
 PAIRS, GLIMPSE = 100, 4
@@ -56,8 +58,9 @@ class FoldPlanner:
         failure = Failure()
         orders = self._nearest_first(picks, places)
         if len(picks) == 2:
-            for arms in orders:
-                if (plan := self._at_once(picks, places, arms, failure)) is not None:
+            near = max(float(np.linalg.norm(points[0] - points[1])) for points in (picks, places)) < NEAR
+            for lean, arms in product((False, True) if near else (False,), orders):
+                if (plan := self._at_once(picks, places, arms, failure, lean)) is not None:
                     return plan
         done: list[tuple[int, list[Motion]]] = []
         alone = Failure()
@@ -81,13 +84,17 @@ class FoldPlanner:
 
         return sorted(orders, key=distance)
 
-    def _at_once(self, picks: Floats, places: Floats, arms: tuple[int, ...], failure: Failure) -> FoldPlan | None:
-        for yaws in wide_sides(picks, places):
+    def _at_once(
+        self, picks: Floats, places: Floats, arms: tuple[int, ...], failure: Failure, lean: bool
+    ) -> FoldPlan | None:
+        """A fold by both arms, the wrists upright or, where tools are near to each other, leaning apart."""
+        inwards = [-away for away in apart(picks, places, ROWS)] if lean else [None, None]
+        for yaws in islice(wide_sides(picks, places), 1 if lean else None):
             carries: list[list[Carry]] = [[], []]
-            for arm, pick, place in zip(arms, picks, places, strict=True):
+            for arm, pick, place, towards in zip(arms, picks, places, inwards, strict=True):
                 ways = self.moves.ways[arm]
                 ways.forget()
-                carries[arm] = ways.carries(pick, place, yaws)
+                carries[arm] = ways.carries(pick, place, yaws, towards)
                 if not carries[arm]:
                     failure.note(ways.stage, ways.why)
                     break

@@ -60,29 +60,44 @@ def wide_sides(picks: Floats, places: Floats) -> Iterator[tuple[float, float]]:
         yield start + np.pi / 2 + offset, end + np.pi / 2 + offset
 
 
-def leaning_out(poses: Floats, base: Floats, angle: float) -> Floats:
-    """Poses at the same places of a tool that points away from the arm's base, so that it reaches farther.
+def away_from(poses: Floats, base: Floats) -> Floats:
+    """Directions in the plane of the table from an arm's base, where it stands, to poses: shape (T, 2)."""
+    away = poses[:, :2, 3] - base[:2]
+    return away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
 
-    Its wide side lies across the way out: of a hand that leans to a side, one finger would be in the table. It is
+
+def apart(picks: Floats, places: Floats, rows: int) -> tuple[Floats, Floats]:
+    """Directions away from the other tool along a carry of two tools, shape (3 * rows, 2) each."""
+    start, end = ((points[0] - points[1])[:2] for points in (picks, places))
+    shares = np.repeat((1 - np.cos(np.linspace(0, np.pi, rows))) / 2, 2).reshape(rows, 2)
+    between = start / np.linalg.norm(start) * (1 - shares) + end / np.linalg.norm(end) * shares
+    first = np.vstack([np.tile(between[0], (rows, 1)), between, np.tile(between[-1], (rows, 1))])
+    first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-9)
+    return first, -first
+
+
+def leaning(poses: Floats, directions: Floats, angle: float) -> Floats:
+    """Poses at the same places of a tool that leans, so that the arm behind it is out of the way or reaches farther.
+
+    Its wide side lies across the direction: of a hand that leans to a side, one finger would be in the table. It is
     raised so that the lower edge of its fingers is as high as their tips were.
 
     Args:
         poses: of a tool that points down, shape (T, 4, 4).
-        base: where the arm stands [m], shape (2 or more,).
+        directions: unit vectors in the plane of the table, to where fingers point, shape (T, 2).
         angle: by how much it leans [rad].
     """
-    leaning = np.empty_like(poses)
-    for pose, new in zip(poses, leaning, strict=True):
-        away = pose[:2, 3] - base[:2]
-        out = np.arctan2(away[1], away[0])
+    leant = np.empty_like(poses)
+    for pose, direction, new in zip(poses, directions, leant, strict=True):
+        out = np.arctan2(direction[1], direction[0])
         # Of the two ways to hold a two-finger hand, the one nearer to how it was held.
         side = 1.0 if -np.sin(out) * pose[0, 1] + np.cos(out) * pose[1, 1] >= 0 else -1.0
         new[:] = top_down(pose[:3, 3], out + side * np.pi / 2)
-        ahead = np.array([np.cos(out), np.sin(out), 0.0])
+        ahead = np.array([*direction, 0.0])
         approach = np.cos(angle) * new[:3, 2] + np.sin(angle) * ahead
         new[:3, 0], new[:3, 2] = np.cross(new[:3, 1], approach), approach
         new[2, 3] += PAD * np.sin(angle)
-    return leaning
+    return leant
 
 
 def carried(pick: Floats, place: Floats, yaws: tuple[float, float], hover: float, rows: int) -> Floats:
