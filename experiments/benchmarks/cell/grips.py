@@ -137,12 +137,9 @@ def _pie(tally: Tally, path: Path) -> None:
     figure = Figure((5, 3.4), layout="constrained")
     axes = figure.add_subplot()
     stages = [(name, seconds) for name, seconds in tally.stages.most_common() if seconds]
-    axes.pie(
-        [seconds for _, seconds in stages],
-        labels=[f"{name}, {seconds / max(tally.steps, 1):.2f} s" for name, seconds in stages],
-        startangle=90,
-        textprops={"fontsize": 8},
-    )
+    wedges, _ = axes.pie([seconds for _, seconds in stages], startangle=90)
+    told = [f"{name}: {seconds / max(tally.steps, 1):.2f} s" for name, seconds in stages]
+    axes.legend(wedges, told, loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
     axes.set_title("a fold in the robot cell", fontsize=10)
     figure.savefig(path, dpi=130)
 
