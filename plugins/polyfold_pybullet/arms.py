@@ -37,10 +37,12 @@ class PybulletArms:
         model: RobotModel | None = Field(
             default=None, description="other arms: their URDF, base, joints, tool, home posture and limits"
         )
-        speed: float = Field(default=1.0, gt=0, le=1, description="share of the joints' limits of velocity")
-        carry_speed: float = Field(default=0.5, gt=0, description="fastest move of a tool that carries [m/s]")
-        transit_speed: float = Field(default=1.0, gt=0, description="fastest move of a tool that does not [m/s]")
-        interval: float = Field(default=0.02, gt=0, le=1, description="time between two steps of a motion [s]")
+        speed: float = Field(default=1.0, ge=0.01, le=1, description="share of the joints' limits of velocity")
+        carry_speed: float = Field(default=0.5, ge=0.01, le=5, description="fastest move of a tool that carries [m/s]")
+        transit_speed: float = Field(
+            default=1.0, ge=0.01, le=5, description="fastest move of a tool that does not [m/s]"
+        )
+        interval: float = Field(default=0.02, ge=0.001, le=1, description="time between two steps of a motion [s]")
 
     def __init__(self, config: Config | None = None) -> None:
         self.config = config or self.Config()
@@ -133,6 +135,8 @@ class PybulletArms:
         """Move a tool on a straight line to a pose, at most at ``speed`` [m/s], while the other arm rests."""
         _, planner = self._ready()
         self._refuse_after_a_stop()
+        if not (np.isfinite(speed) and speed > 0):
+            raise RobotError(f"a tool can't move at {speed} m/s; give a speed above 0")
         moved = planner.moves.along(np.hstack(self._joints), arm, np.asarray(pose, float), speed)
         self._do(moved, "choose another pose")
 

@@ -66,11 +66,17 @@ class Calibrate:
         from polyfold_pybullet.views import write_views
 
         intrinsics = None if arguments.intrinsics is None else _matrix(arguments.intrinsics)
+        out = arguments.out or arguments.folder / "camera.json"
+        if out.suffix != ".json" or out.name == POSES:
+            raise ConfigError(f"--out {out} is not a name for the result; give one that ends in .json, not {POSES}")
         if arguments.simulate:
             write_views(arguments.folder, arguments.simulate, arguments.seed)
         names, pictures, tools = read_views(arguments.folder)
+        if out.with_suffix(".png").resolve() in {(arguments.folder / name).resolve() for name in names}:
+            raise ConfigError(
+                f"the picture beside {out} would take the place of one of the board; choose another --out"
+            )
         found = Calibration.of(pictures, tools, arguments.board, intrinsics)
-        out = arguments.out or arguments.folder / "camera.json"
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps(_told(found, names, arguments.board), indent=1) + "\n", encoding="utf-8")
         picture = out.with_suffix(".png")
@@ -96,7 +102,7 @@ def read_views(folder: Path) -> tuple[list[str], list[Picture], Floats]:
         raise ConfigError(f"{folder} holds no {POSES}; write into it, for every picture, {EXAMPLE}")
     try:
         poses = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ConfigError(f"{path} is no JSON ({error}); write {EXAMPLE}") from error
     if not isinstance(poses, dict) or not poses:
         raise ConfigError(f"{path} names no pictures; write {EXAMPLE}")

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from polyfold.errors import SimulationError
+from polyfold.errors import ConfigError, SimulationError
 from polyfold_pybullet.robots import Arm, RobotModel, written_part
 
 Floats = NDArray[np.float64]
@@ -159,13 +159,17 @@ class Cell:
             for what, other in self._obstacles
         ]
 
-    def near_obstacles(self, arm: int, joints: ArrayLike) -> Near | None:
-        """What an arm at joint angles, shape (N,), is too near to, itself included; None if nothing."""
+    def near_obstacles(self, arm: int, joints: ArrayLike, pressing: bool = False) -> Near | None:
+        """What an arm at joint angles, shape (N,), is too near to, itself included; None if nothing.
+
+        With ``pressing`` its fingertips may press on the table, as they do where they take cloth.
+        """
         self.set_arm(arm, joints)
         body, limits = self.arms[arm], self.clearances
         for what, number, links in self.obstacles(arm):
             for link, distance in self._links_near(body, number, links, what == TORSO):
-                allowed = limits.hands if what == TABLE and link in body.tips else limits.obstacles
+                tip = what == TABLE and link in body.tips
+                allowed = limits.obstacles if not tip else limits.hands if pressing else max(0.0, limits.hands)
                 if distance < allowed:
                     return Near(self._name(arm, link), what, distance)
         for one, other in body.pairs:
@@ -295,9 +299,13 @@ class Cell:
         return torso
 
     def _load_arm(self, arm: Arm, folder: Path) -> _Body:
-        if not arm.has_torso:
-            return self._load_file(Path(arm.urdf), arm)
-        return self._load_file(written_part([one for one in self.model.arms if one.has_torso], arm.name, folder), arm)
+        if arm.has_torso:
+            path = written_part([one for one in self.model.arms if one.has_torso], arm.name, folder)
+        else:
+            path = _readable(Path(arm.urdf))
+        body = self._load_file(path, arm)
+        _check_names(arm, body)
+        return body
 
     def _load_file(self, path: Path, arm: Arm) -> _Body:
         bullet = self._bullet
@@ -328,6 +336,26 @@ class Cell:
                 if not both_behind and not list(self._closest(body.number, body.number, 0.01, other, link)):
                     pairs.append((other, link))
         return _Body(body.number, body.links, body.joints, body.fingers, body.tips, tuple(pairs))
+
+
+def _readable(path: Path) -> Path:
+    """The path of a URDF; PyBullet ends the process over some that are none."""
+    from xml.etree import ElementTree
+
+    try:
+        ElementTree.fromstring(path.read_bytes())
+    except (OSError, ElementTree.ParseError) as error:
+        raise ConfigError(f"{path} is no URDF that can be read ({error}); give the path of the arm's file") from error
+    return path
+
+
+def _check_names(arm: Arm, body: _Body) -> None:
+    """Raise ConfigError if a joint or link of the model is not in its file."""
+    found = {"joints": len(body.joints), "fingers": len(body.fingers), "tips": len(body.tips)}
+    for name, count in found.items():
+        if count != len(getattr(arm, name)):
+            named, known = ", ".join(getattr(arm, name)), ", ".join(sorted(body.links.values()))
+            raise ConfigError(f"{arm.urdf} lacks some of the {arm.name} arm's {name} {named}; its links are {known}")
 
 
 def _imported() -> Any:

@@ -24,15 +24,15 @@ class DepthNoise(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    baseline: float = Field(default=0.05, gt=0, description="between the two imagers [m]")
-    focal: float = Field(default=640.0, gt=0, description="focal length in a picture 1280 wide [px]")
-    disparity_noise: float = Field(default=0.08, ge=0, description="standard deviation of disparity [px]")
-    quantum: float = Field(default=1 / 32, ge=0, description="step of disparity [px]")
-    correlation_px: float = Field(default=1.5, ge=0, description="over how many pixels errors are alike [px]")
+    baseline: float = Field(default=0.05, ge=0.001, le=1, description="between the two imagers [m]")
+    focal: float = Field(default=640.0, ge=10, le=1e5, description="focal length in a picture 1280 wide [px]")
+    disparity_noise: float = Field(default=0.08, ge=0, le=10, description="standard deviation of disparity [px]")
+    quantum: float = Field(default=1 / 32, ge=0, le=10, description="step of disparity [px]")
+    correlation_px: float = Field(default=1.5, ge=0, le=50, description="over how many pixels errors are alike [px]")
     fixed_share: float = Field(default=0.4, ge=0, le=1, description="share of the variance that stays between pictures")
-    bias: float = Field(default=0.0015, ge=0, description="by how much a plane is off and tilted, RMS [m]")
+    bias: float = Field(default=0.0015, ge=0, le=0.1, description="by how much a plane is off and tilted, RMS [m]")
     edge_px: int = Field(default=2, ge=0, le=20, description="width of the band without depth along edges [px]")
-    edge_step: float = Field(default=0.015, gt=0, description="what counts as an edge: a step of depth [m]")
+    edge_step: float = Field(default=0.015, ge=0.001, le=1, description="what counts as an edge: a step of depth [m]")
     dropouts: float = Field(default=0.005, ge=0, lt=1, description="share of pixels without depth elsewhere")
 
     def deviation(self, depth: ArrayLike) -> Floats:

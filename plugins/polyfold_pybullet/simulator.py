@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from polyfold.errors import GroundingError
 from polyfold.garments import Garment
@@ -19,6 +19,7 @@ from polyfold.plugins.interfaces import RecordsMotion
 from polyfold.types import Action, Observation, SimState
 from polyfold_pybullet.arms import PybulletArms
 from polyfold_pybullet.depth_noise import DepthNoise
+from polyfold_pybullet.views import FEWEST
 
 if TYPE_CHECKING:
     from polyfold_pybullet.depth_noise import NoisyDepth
@@ -28,6 +29,8 @@ Floats = NDArray[np.float64]
 
 _log = logging.getLogger(__name__)
 
+ELEVATION = 0.9
+"""Height of the camera of ``xpbd``, unless its parameters say otherwise [m]."""
 NEAR_PICK = 0.015
 """Cloth so near to a pick lies between the fingers [m]."""
 
@@ -83,7 +86,8 @@ class CellSimulator:
 
         cloth: str = Field(default="xpbd", description="the simulator of the cloth")
         cloth_params: dict[str, Any] = Field(
-            default={"elevation": 0.9}, description="its parameters; the camera is as high as it says"
+            default_factory=dict,
+            description="its parameters; the camera of xpbd is 0.9 m high unless they say otherwise",
         )
         arms: PybulletArms.Config = Field(default=PybulletArms.Config(), description="which arms, and how they move")
         noise: DepthNoise = Field(default=DepthNoise(), description="errors of the depth camera")
@@ -95,14 +99,33 @@ class CellSimulator:
             default=0.01, ge=0, le=0.05, description="how far below the measured surface the fingers close [m]"
         )
 
+        @field_validator("cloth")
+        @classmethod
+        def _is_no_cell(cls, name: str) -> str:
+            if name == "pybullet":
+                raise ValueError("a cell holds no cell; name a simulator of cloth, such as xpbd")
+            return name
+
+        @field_validator("views")
+        @classmethod
+        def _are_enough(cls, views: int) -> int:
+            if 0 < views < FEWEST:
+                raise ValueError(f"calibration needs {FEWEST} views and more; 0 takes the camera as exact")
+            return views
+
+        @property
+        def inner(self) -> dict[str, Any]:
+            """The parameters of the simulator of cloth."""
+            return {**({"elevation": ELEVATION} if self.cloth == "xpbd" else {}), **self.cloth_params}
+
     @classmethod
     def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:
         """The simulator that references are made in: its grippers go where they should."""
-        return config.cloth, dict(config.cloth_params)
+        return config.cloth, config.inner
 
     def __init__(self, config: Config | None = None) -> None:
         self.config = config or self.Config()
-        self._cloth: Any = create("simulators", self.config.cloth, self.config.cloth_params)
+        self._cloth: Any = create("simulators", self.config.cloth, self.config.inner)
         self._arms = PybulletArms(self.config.arms)
         self._eye: Eye | None = None
         self._depth: NoisyDepth | None = None
@@ -160,6 +183,7 @@ class CellSimulator:
         told = state.grasped, state.short, state.slipped
         self._told = None if None in told else told  # type: ignore[assignment]
         self._cloth.restore(state)
+        self._arms.park()
 
     def close(self) -> None:
         """Release cloth and cell."""

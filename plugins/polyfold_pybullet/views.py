@@ -17,6 +17,8 @@ Floats = NDArray[np.float64]
 
 BOARD = "charuco:7x5:30:22"
 SQUARES, SIDE, MARKER = (7, 5), 0.03, 0.022
+FEWEST = 5
+"""Views that calibration needs."""
 IN_HAND = 0.13
 """How far from the fingertips the board's middle is [m]."""
 SENSOR, FOCAL = (1280, 720), 910.0
@@ -55,6 +57,8 @@ def write_views(folder: Path, count: int, seed: int) -> None:
     """
     import cv2
 
+    if count < FEWEST:
+        raise ConfigError(f"calibration needs {FEWEST} views and more, not {count}; 20 are good")
     folder.mkdir(parents=True, exist_ok=True)
     if any(folder.iterdir()):
         raise ConfigError(f"{folder} is not empty; give a new folder for simulated views")

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.errors import GarmentError
-from polyfold.geometry._charuco import find_board
+from polyfold.geometry._charuco import described, find_board
 
 Floats = NDArray[np.float64]
 
@@ -20,6 +20,16 @@ OUTLIER = 3.0
 """A view whose error is so many times the median's is left out ..."""
 GOOD = 0.5
 """... unless it is as small as this [px]."""
+
+
+WORST = 0.01
+"""Corners farther from where they should be than this share of the picture's longer side fit no camera."""
+TURN = 0.1
+"""The hand must have turned by so much between two views at least [rad]."""
+ADVICE = (
+    "check the board's sides and the intrinsics, that poses are in metres and of the tool in the robot's world, and "
+    "that each belongs to its picture"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +87,13 @@ class Calibration:
             intrinsics: pinhole matrix [px], shape (3, 3); estimated from the views without it, which needs tilted ones.
 
         Raises:
-            GarmentError: if the board is seen in too few of them.
+            GarmentError: if the board is seen in too few of them, the hand hardly turned between them, or no pose of
+                the camera explains them.
         """
-        views, skipped = _seen(pictures, np.asarray(tools, float), board)
+        views, skipped = _seen(pictures, _checked(tools, len(pictures)), board)
         matrix = _intrinsics(views, pictures[0].shape[:2]) if intrinsics is None else np.asarray(intrinsics, float)
+        if matrix.shape != (3, 3) or not np.isfinite(matrix).all():
+            raise GarmentError("intrinsics are a finite pinhole matrix of shape (3, 3) in pixels")
         camera, held = _solved(views, matrix)
         if wrong := _wrong(views, camera, held, matrix):
             camera, held = _solved([view for view in views if view.number not in wrong], matrix)
@@ -90,7 +103,10 @@ class Calibration:
             for number, error in wrong.items()
         }
         corners = {view.number: (view.pixels.astype(float), view.due(camera, held, matrix)) for view in views}
-        return cls(matrix, camera, held, corners, dict(sorted(skipped.items())))
+        found = cls(matrix, camera, held, corners, dict(sorted(skipped.items())))
+        if not found.error <= WORST * max(pictures[0].shape[:2]):
+            raise GarmentError(f"corners are {found.error:.0f} px from where they should be at best; {ADVICE}")
+        return found
 
     @property
     def errors(self) -> dict[int, float]:
@@ -104,13 +120,29 @@ class Calibration:
         return float(np.sqrt(np.mean(np.square(used))))
 
 
+def _checked(tools: ArrayLike, count: int) -> Floats:
+    """Poses of the tool, shape (count, 4, 4). Raises GarmentError if they are none."""
+    poses = np.asarray(tools, float)
+    if len(poses) != count:
+        raise GarmentError(f"there are {count} pictures and {len(poses)} poses; give one pose for each")
+    if poses.shape != (count, 4, 4) or not np.isfinite(poses).all():
+        raise GarmentError(f"poses of the tool are finite and of shape ({count}, 4, 4), not {poses.shape}")
+    turns = poses[:, :3, :3]
+    if not np.allclose(turns @ turns.transpose(0, 2, 1), np.eye(3), atol=1e-2) or (np.linalg.det(turns) < 0).any():
+        raise GarmentError(
+            "a pose of the tool holds no rotation in its first three rows and columns; give metres and turns"
+        )
+    return poses
+
+
 def _seen(pictures: Sequence[NDArray[np.uint8]], tools: Floats, board: str) -> tuple[list[_View], dict[int, str]]:
     """The pictures that show the board, and why the others do not, by their numbers."""
-    if len(tools) != len(pictures):
-        raise GarmentError(f"there are {len(pictures)} pictures and {len(tools)} poses; give one pose for each")
+    described(board)
     views: list[_View] = []
     skipped: dict[int, str] = {}
     for number, (picture, tool) in enumerate(zip(pictures, tools, strict=True)):
+        if picture.dtype != np.uint8 or picture.ndim != 3 or picture.shape[2] != 3:
+            raise GarmentError(f"picture {number} has {picture.dtype} and shape {picture.shape}; give uint8, (H, W, 3)")
         try:
             pixels, places, _ = find_board(picture, board)
         except GarmentError as error:
@@ -123,6 +155,9 @@ def _seen(pictures: Sequence[NDArray[np.uint8]], tools: Floats, board: str) -> t
         raise GarmentError(
             f"the board is seen in {len(views)} of {len(pictures)} pictures, {FEWEST_VIEWS} are needed{first}"
         )
+    turns = [np.arccos(np.clip((np.trace(views[0].tool[:3, :3].T @ v.tool[:3, :3]) - 1) / 2, -1, 1)) for v in views]
+    if max(turns) < TURN:
+        raise GarmentError("the hand hardly turned between the views; tilt the board by 20 degrees and more both ways")
     return views, skipped
 
 
@@ -139,7 +174,12 @@ def _intrinsics(views: Sequence[_View], size: tuple[int, ...]) -> Floats:
 
 def _solved(views: Sequence[_View], intrinsics: Floats) -> tuple[Floats, Floats]:
     """Pose of the camera in the world, and of the board in the tool."""
-    return _refined(*_closed_form(views, intrinsics), intrinsics, views)
+    import cv2
+
+    try:
+        return _refined(*_closed_form(views, intrinsics), intrinsics, views)
+    except (ValueError, np.linalg.LinAlgError, cv2.error) as error:
+        raise GarmentError(f"no pose of a camera explains the views; {ADVICE}") from error
 
 
 def _wrong(views: Sequence[_View], camera: Floats, held: Floats, intrinsics: Floats) -> dict[int, float]:

@@ -34,7 +34,7 @@ def find_board(rgb: NDArray[np.uint8], description: str) -> tuple[Floats, Floats
     """
     import cv2
 
-    board, (across, down) = _board(description)
+    board, (across, down) = described(description)
     corners, numbers, _, _ = cv2.aruco.CharucoDetector(board).detectBoard(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY))
     count = 0 if numbers is None else len(numbers)
     if count < FEWEST:
@@ -51,7 +51,7 @@ def find_board(rgb: NDArray[np.uint8], description: str) -> tuple[Floats, Floats
     return pixels, places, mapped(homography(places, pixels), around)
 
 
-def _board(description: str) -> tuple[Any, tuple[float, float]]:
+def described(description: str) -> tuple[Any, tuple[float, float]]:
     """OpenCV's board and its size [m]."""
     import cv2
 

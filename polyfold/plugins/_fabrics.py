@@ -14,6 +14,7 @@ from polyfold.plugins._traits import MadeOf
 if TYPE_CHECKING:
     from polyfold.config import ComponentSpec
     from polyfold.garments import Fabric, Garment
+    from polyfold.plugins.interfaces import GarmentKind
     from polyfold.polygon import Template
 
 FALLBACK = "poplin"
@@ -84,6 +85,16 @@ def garment_template(garment_kind: str, fabric: Fabric | None = None) -> Templat
     return HOST.create("garments", garment_kind).template().of_thickness(panels * made.thickness)
 
 
+def _cut(generator: GarmentKind, kind: str, seed: int, edge_length: float, size: float, scale: float) -> Garment:
+    """The garment as it is before it is scaled to a size."""
+    try:
+        return generator.generate(seed, edge_length / scale)
+    except GarmentError as error:
+        raise GarmentError(
+            f"an edge length of {edge_length:g} m does not suit a {kind} of {size:g} m; give a smaller one"
+        ) from error
+
+
 def generate_garment(
     garment_kind: str,
     seed: int,
@@ -117,7 +128,7 @@ def generate_garment(
             )
         scale = size / float(np.ptp(garment.mesh.vertices, axis=0).max())
         if edge_length is not None:
-            garment = generator.generate(seed, edge_length / scale)
+            garment = _cut(generator, garment_kind, seed, edge_length, size, scale)
         mesh = replace(garment.mesh, vertices=garment.mesh.vertices * scale)
         garment = replace(garment, name=f"{garment.name}-{100 * size:.0f}cm", mesh=mesh)
     return replace(garment, fabric=make_fabric(fabric or Experiment().fabric, garment_kind))

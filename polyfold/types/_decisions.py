@@ -53,8 +53,10 @@ class Action:
         object.__setattr__(self, "places", places)
         if self.heights is not None:
             heights = np.asarray(self.heights, float)
-            if heights.shape != (len(picks),) or not np.isfinite(heights).all():
-                raise ActionError(f"heights must be {len(picks)} finite number(s), one per arm; got {heights.tolist()}")
+            if heights.shape != (len(picks),) or not (np.isfinite(heights) & (heights >= 0)).all():
+                raise ActionError(
+                    f"heights must be {len(picks)} number(s) from 0 up, one per arm; got {heights.tolist()}"
+                )
             object.__setattr__(self, "heights", heights)
 
     @property

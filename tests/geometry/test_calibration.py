@@ -66,3 +66,35 @@ def test_the_camera_of_a_seed_is_always_taken_for_the_same():
     one, again = (views.calibrated_eye.__wrapped__(camera, 12, 5) for _ in range(2))
     assert one.pose.tobytes() == again.pose.tobytes()
     assert views.calibrated_eye(camera, 0, 5).places([[199.5, 199.5]], [0.9])[0] == pytest.approx([0, 0, 0])
+
+
+@pytest.mark.parametrize(
+    ("spoil", "message"),
+    [
+        (lambda tools: np.linalg.inv(tools), "explains the views|px from where they should be"),
+        (lambda tools: np.roll(tools, 1, axis=0), "explains the views|px from where they should be"),
+        (lambda tools: np.tile(tools[:1], (len(tools), 1, 1)), "hardly turned"),
+        (lambda tools: tools * 2, "no rotation"),
+        (lambda tools: tools[:, :3], "of shape"),
+        (lambda tools: np.full_like(tools, np.nan), "finite"),
+    ],
+)
+def test_poses_that_can_not_be_are_answered_with_what_to_check(seen, spoil, message):
+    pictures, tools = seen
+    with pytest.raises(GarmentError, match=message):
+        Calibration.of(pictures, spoil(tools), views.BOARD, intrinsics=views.sensor())
+
+
+def test_a_wrong_board_or_lens_is_no_calibration(seen):
+    pictures, tools = seen
+    with pytest.raises(GarmentError, match="px from where they should be at best; check the board's sides"):
+        Calibration.of(pictures, tools, "charuco:7x5:60:44", intrinsics=views.sensor())
+    wrong = np.array([[2000.0, 0, 639.5], [0, 910, 359.5], [0, 0, 1]])
+    with pytest.raises(GarmentError, match="px from where they should be at best"):
+        Calibration.of(pictures, tools, views.BOARD, intrinsics=wrong)
+    with pytest.raises(GarmentError, match="finite pinhole matrix"):
+        Calibration.of(pictures, tools, views.BOARD, intrinsics=np.full((3, 3), np.nan))
+    with pytest.raises(GarmentError, match="does not read charuco"):
+        Calibration.of(pictures, tools, "a4")
+    with pytest.raises(GarmentError, match=r"give uint8, \(H, W, 3\)"):
+        Calibration.of([picture[:, :, 0] for picture in pictures], tools, views.BOARD)

@@ -43,3 +43,8 @@ def test_a_size_for_a_kind_that_a_study_has_not_is_refused(tmp_path):
     study = Study(name="small", tasks=("square-*",), sizes={"squre": 0.2})
     with pytest.raises(ConfigError, match="did you mean 'square'"):
         polyfold.run(study, tmp_path / "run")
+
+
+def test_a_mesh_too_coarse_for_the_size_is_said_in_what_was_given():
+    with pytest.raises(GarmentError, match=r"an edge length of 0\.03 m does not suit a tshirt of 0\.1 m"):
+        polyfold.garment("tshirt", size=0.1, edge_length=0.03)

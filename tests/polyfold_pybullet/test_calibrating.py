@@ -52,7 +52,7 @@ def test_the_pictures_that_were_left_out_are_named(views, capsys):
 
 
 def test_nothing_is_overwritten_by_simulated_views(views, capsys):
-    assert told(views, capsys, "--simulate", "3") == (
+    assert told(views, capsys, "--simulate", "6") == (
         1,
         f"polyfold: {views} is not empty; give a new folder for simulated views\n",
     )
@@ -84,3 +84,17 @@ def test_a_folder_without_poses_and_wrong_options_are_refused(views, capsys, tmp
     assert "is not FX,FY,CX,CY" in told(views, capsys, "--intrinsics", "1,2,3")[1]
     assert "is not FX,FY,CX,CY" in told(views, capsys, "--intrinsics", "nan,1,2,3")[1]
     assert "does not read charuco" in told(views, capsys, "--board", "chess")[1]
+
+
+@pytest.mark.parametrize("name", ["poses.json", "view-00.json", "camera.png", "camera"])
+def test_the_result_takes_the_place_of_nothing_that_was_given(views, capsys, name):
+    before = {path.name: path.read_bytes() for path in views.iterdir()}
+    status, text = told(views, capsys, "--out", str(views / name))
+    assert status == 1
+    assert "--out" in text
+    assert {path.name: path.read_bytes() for path in views.iterdir()} == before
+
+
+def test_too_few_views_are_not_even_made(tmp_path, capsys):
+    assert "needs 5 views and more, not 3" in told(tmp_path / "few", capsys, "--simulate", "3")[1]
+    assert not (tmp_path / "few").exists()

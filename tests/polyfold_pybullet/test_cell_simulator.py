@@ -7,6 +7,7 @@ import pytest
 from polyfold_pybullet.robots import panda
 
 from polyfold import plugins
+from polyfold.errors import ConfigError
 from polyfold.plugins.interfaces import HasReferenceConfig, Simulator
 from polyfold.types import Action
 
@@ -137,3 +138,45 @@ def test_a_state_is_returned_to_with_what_became_of_its_folds(folded):
     np.testing.assert_array_equal(folded.state().positions, state.positions)
     assert folded.state().extra["cell"] == state.extra["cell"]
     assert folded.state().grasped == state.grasped
+
+
+def test_a_state_is_returned_to_after_a_fold_that_was_broken_off(towel, monkeypatch):
+    simulator = cell()
+    simulator.reset(towel, 1)
+    state = simulator.state()
+    stepped = simulator._arms._show
+
+    def interrupted():
+        if np.abs(np.concatenate(simulator._arms._joints) - np.concatenate(parked)).max() > 0.1:
+            raise KeyboardInterrupt
+        stepped()
+
+    parked = [joints.copy() for joints in simulator._arms._joints]
+    monkeypatch.setattr(simulator._arms, "_show", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        simulator.execute(half(state))
+    monkeypatch.undo()
+    simulator.restore(state)
+    simulator.execute(half(state))
+    (fold,) = simulator.state().extra["cell"]
+    assert fold["mode"] == "at once"
+
+
+@pytest.mark.parametrize(
+    ("params", "message"),
+    [
+        ({"cloth": "pybullet"}, "a cell holds no cell"),
+        ({"views": 3}, "calibration needs 5 views and more; 0 takes the camera as exact"),
+        ({"noise": {"correlation_px": 1e9}}, "less than or equal to 50"),
+        ({"noise": {"bias": float("inf")}}, "0.1"),
+    ],
+)
+def test_a_cell_that_can_not_be_is_refused(params, message):
+    with pytest.raises(ConfigError, match=message):
+        cell(**params)
+
+
+def test_the_camera_hangs_where_it_does_whatever_else_is_said_of_the_cloth(towel):
+    simulator = cell(cloth_params={"order": 2})
+    assert simulator.reset(towel, 1).camera.elevation == 0.9
+    assert cell(cloth="faulty", cloth_params={"miss": 0.5}).config.inner == {"miss": 0.5}

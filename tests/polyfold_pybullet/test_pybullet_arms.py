@@ -119,3 +119,39 @@ def test_an_unknown_robot_is_told_on_connecting():
     made = plugins.create("robots", "pybullet", {"robot": "yummi"})
     with pytest.raises(ConfigError, match="did you mean 'yumi'"):
         made.connect()
+
+
+@pytest.mark.parametrize("speed", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_speed_that_is_none_moves_nothing(robot, speed):
+    before = robot.joint_state(0)
+    with pytest.raises(RobotError, match="give a speed above 0"):
+        robot.move_linear(0, robot.tcp_pose(0), speed=speed)
+    np.testing.assert_array_equal(robot.joint_state(0), before)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"urdf": "/"}, "no URDF that can be read"),
+        ({"urdf": "/nowhere.urdf"}, "/nowhere.urdf is no URDF"),
+        ({"tips": ("nope",)}, "lacks some of the left arm's tips nope; its links are"),
+        ({"fingers": ("nope",)}, "lacks some of the left arm's fingers"),
+        ({"joints": tuple(f"joint{k}" for k in range(7))}, "joint0"),
+    ],
+)
+def test_what_a_model_s_file_does_not_hold_is_named(change, message):
+    from polyfold_pybullet.robots import panda
+
+    model = panda()
+    arms = (model.arms[0].model_copy(update=change), model.arms[1])
+    made = plugins.create("robots", "pybullet", {"model": model.model_copy(update={"arms": arms}).model_dump()})
+    with pytest.raises(ConfigError, match=message):
+        made.connect()
+
+
+@pytest.mark.parametrize(
+    "params", [{"speed": 1e-9}, {"carry_speed": 1e-9}, {"interval": 1e-9}, {"transit_speed": float("inf")}]
+)
+def test_motions_that_would_never_end_are_refused(params):
+    with pytest.raises(ConfigError):
+        plugins.create("robots", "pybullet", params)

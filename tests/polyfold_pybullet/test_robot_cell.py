@@ -67,10 +67,13 @@ def test_hands_in_the_same_place_overlap(pandas):
     assert "overlap by" in str(near)
 
 
-@pytest.mark.parametrize(("height", "fits"), [(0.001, True), (-0.01, False)])
-def test_fingertips_may_touch_the_table_and_not_sink_into_it(pandas, height, fits):
+@pytest.mark.parametrize(
+    ("height", "pressing", "fits"),
+    [(0.001, True, True), (-0.001, True, True), (-0.001, False, False), (-0.01, True, False)],
+)
+def test_fingertips_may_press_on_the_table_where_they_take_cloth_and_not_sink_into_it(pandas, height, pressing, fits):
     joints = RIGHT.inverse(top_down([0.2, 0.0, height], 0.3)).joints
-    near = pandas.near_obstacles(1, joints)
+    near = pandas.near_obstacles(1, joints, pressing)
     assert (near is None) == fits
     if not fits:
         assert near.other == "the table"

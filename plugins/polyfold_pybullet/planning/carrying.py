@@ -101,7 +101,7 @@ class ArmWays:
     def clear(self, carry: Carry) -> bool:
         """Whether nothing but perhaps the other arm is in the way of a carry."""
         if carry not in self._known:
-            near = self._near(np.vstack([part.sampled(STEP) for part in parts(carry.rows)]))
+            near = self._near(np.vstack([part.sampled(STEP) for part in parts(carry.rows)]), pressing=True)
             if near is not None:
                 self._note(1, f"{near} while it carries")
             self._known[carry] = near is None
@@ -146,12 +146,12 @@ class ArmWays:
                 return answer.reason
         return None
 
-    def _near(self, rows: Floats) -> object | None:
+    def _near(self, rows: Floats, pressing: bool = False) -> object | None:
         chain = self._kinematics.chain
         if (rows < chain.lower - 1e-6).any() or (rows > chain.upper + 1e-6).any():
             return f"a joint of the {self._name} arm would pass its limit"
         for row in coarse_first(rows):
-            near = self._cell.near_obstacles(self._arm, row)
+            near = self._cell.near_obstacles(self._arm, row, pressing)
             if near is not None:
                 return near
         return None

@@ -129,7 +129,7 @@ class Moves:
         both = Path(np.hstack([path, waits] if arm == 0 else [waits, path]))
         rows = both.sampled(STEP)
         for one in self.apart(rows)[arm]:
-            if (near := self._cell.near_obstacles(arm, one)) is not None:
+            if (near := self._cell.near_obstacles(arm, one, pressing=True)) is not None:
                 return Infeasible(f"{near} on this line", "carry")
         if (near := self.near(rows)) is not None:
             return Infeasible(f"{near} on this line", "together")

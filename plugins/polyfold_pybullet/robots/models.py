@@ -6,8 +6,9 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-Vector = tuple[float, float, float]
-Positive = Annotated[float, Field(gt=0)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Vector = tuple[Finite, Finite, Finite]
+Positive = Annotated[float, Field(ge=0.01, allow_inf_nan=False)]
 
 
 class Table(BaseModel):
@@ -79,6 +80,12 @@ class Arm(BaseModel):
     open_width: float = 0.02
     closed_width: float = 0.0
     tips: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _opens(self) -> Arm:
+        if not 0 <= self.closed_width <= self.open_width:
+            raise ValueError("a hand's open_width is no smaller than its closed_width, and that not below 0")
+        return self
 
     @model_validator(mode="after")
     def _has_a_value_for_each_joint(self) -> Arm:
