@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -14,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from polyfold.errors import ConfigError, SimulationError
+from polyfold.errors import SimulationError
+from polyfold_pybullet.bodies import Body, check_names, imported, load_body, readable
 from polyfold_pybullet.robots import Arm, RobotModel, written_part
 
 Floats = NDArray[np.float64]
@@ -62,18 +61,6 @@ class Near:
         return f"{self.one} and {self.other} {where} by {1000 * abs(self.distance):.0f} mm"
 
 
-@dataclass(frozen=True)
-class _Body:
-    """A body of PyBullet: its number, the names of its links by index, and the joints that are set."""
-
-    number: int
-    links: dict[int, str]
-    joints: tuple[int, ...] = ()
-    fingers: tuple[int, ...] = ()
-    tips: frozenset[int] = frozenset()
-    pairs: tuple[tuple[int, int], ...] = ()
-
-
 class Cell:
     """Two arms at a table in PyBullet, without a window. Loaded by ``open``, or on entering ``with``.
 
@@ -87,8 +74,8 @@ class Cell:
         self.clearances = clearances or Clearances()
         self._client: int | None = None
         self._cloth: int | None = None
-        self.arms: list[_Body] = []
-        self._obstacles: list[tuple[str, _Body]] = []
+        self.arms: list[Body] = []
+        self._obstacles: list[tuple[str, Body]] = []
         self._bounds: list[tuple[int, Sequence[float], Sequence[float]]] = []
 
     def open(self) -> Cell:
@@ -133,7 +120,7 @@ class Cell:
 
     @property
     def _bullet(self) -> Any:
-        return sys.modules.get("pybullet") or _imported()
+        return imported()
 
     def set_arm(self, arm: int, joints: ArrayLike) -> None:
         """Put an arm, 0 or 1, at joint angles [rad, m], shape (N,), at once and without dynamics."""
@@ -243,7 +230,7 @@ class Cell:
         found = self._bullet.getClosestPoints(one, other, within, **chosen, physicsClientId=self.client)
         return ((near[3], near[4], near[8]) for near in found or ())
 
-    def _links_near(self, body: _Body, number: int, links: Sequence[int], torso: bool) -> Iterator[tuple[int, float]]:
+    def _links_near(self, body: Body, number: int, links: Sequence[int], torso: bool) -> Iterator[tuple[int, float]]:
         """Links of an arm, of those that count, that are near an obstacle, and how near [m].
 
         A torso is no convex body, so that measuring takes long; it is done link by link and only for those about it.
@@ -279,7 +266,7 @@ class Cell:
             self.set_hand(index, arm.open_width)
             self.arms[index] = self._with_pairs(self.arms[index])
 
-    def _box_from_to(self, low: Sequence[float], high: Sequence[float], colour: Sequence[float]) -> _Body:
+    def _box_from_to(self, low: Sequence[float], high: Sequence[float], colour: Sequence[float]) -> Body:
         bullet, client = self._bullet, self.client
         half = (np.array(high) - low) / 2
         shape = bullet.createCollisionShape(bullet.GEOM_BOX, halfExtents=half.tolist(), physicsClientId=client)
@@ -287,45 +274,27 @@ class Cell:
             bullet.GEOM_BOX, halfExtents=half.tolist(), rgbaColor=colour, physicsClientId=client
         )
         centre = ((np.array(high) + low) / 2).tolist()
-        return _Body(bullet.createMultiBody(0, shape, seen, centre, physicsClientId=client), {})
+        return Body(bullet.createMultiBody(0, shape, seen, centre, physicsClientId=client), {})
 
-    def _load_torso(self, folder: Path) -> _Body:
+    def _load_torso(self, folder: Path) -> Body:
         whole = [arm for arm in self.model.arms if arm.has_torso]
-        torso = self._load_file(written_part(whole, None, folder), whole[0])
+        torso = load_body(self._bullet, self.client, written_part(whole, None, folder), whole[0])
         links = [-1, *torso.links]
         self._bounds = [
             (link, *self._bullet.getAABB(torso.number, link, physicsClientId=self.client)) for link in links
         ]
         return torso
 
-    def _load_arm(self, arm: Arm, folder: Path) -> _Body:
+    def _load_arm(self, arm: Arm, folder: Path) -> Body:
         if arm.has_torso:
             path = written_part([one for one in self.model.arms if one.has_torso], arm.name, folder)
         else:
-            path = _readable(Path(arm.urdf))
-        body = self._load_file(path, arm)
-        _check_names(arm, body)
+            path = readable(Path(arm.urdf))
+        body = load_body(self._bullet, self.client, path, arm)
+        check_names(arm, body)
         return body
 
-    def _load_file(self, path: Path, arm: Arm) -> _Body:
-        bullet = self._bullet
-        turned = bullet.getQuaternionFromEuler(arm.base_rpy)
-        number = bullet.loadURDF(str(path), arm.base_position, turned, useFixedBase=True, physicsClientId=self.client)
-        joints = [
-            bullet.getJointInfo(number, joint, physicsClientId=self.client)
-            for joint in range(bullet.getNumJoints(number, physicsClientId=self.client))
-        ]
-        links = {info[0]: info[12].decode() for info in joints}
-        index = {info[1].decode(): info[0] for info in joints}
-        return _Body(
-            number,
-            links,
-            tuple(index[name] for name in arm.joints if name in index),
-            tuple(index[name] for name in arm.fingers if name in index),
-            frozenset(link for link, name in links.items() if name in arm.tips),
-        )
-
-    def _with_pairs(self, body: _Body) -> _Body:
+    def _with_pairs(self, body: Body) -> Body:
         """The body with the pairs of its links that can collide: no neighbours, and apart at home."""
         order = [*body.joints, *(link for link in body.links if link > body.joints[-1])]
         pairs = []
@@ -335,42 +304,7 @@ class Cell:
                 both_behind = other >= body.joints[-1]
                 if not both_behind and not list(self._closest(body.number, body.number, 0.01, other, link)):
                     pairs.append((other, link))
-        return _Body(body.number, body.links, body.joints, body.fingers, body.tips, tuple(pairs))
-
-
-def _readable(path: Path) -> Path:
-    """The path of a URDF; PyBullet ends the process over some that are none."""
-    from xml.etree import ElementTree
-
-    try:
-        ElementTree.fromstring(path.read_bytes())
-    except (OSError, ElementTree.ParseError) as error:
-        raise ConfigError(f"{path} is no URDF that can be read ({error}); give the path of the arm's file") from error
-    return path
-
-
-def _check_names(arm: Arm, body: _Body) -> None:
-    """Raise ConfigError if a joint or link of the model is not in its file."""
-    found = {"joints": len(body.joints), "fingers": len(body.fingers), "tips": len(body.tips)}
-    for name, count in found.items():
-        if count != len(getattr(arm, name)):
-            named, known = ", ".join(getattr(arm, name)), ", ".join(sorted(body.links.values()))
-            raise ConfigError(f"{arm.urdf} lacks some of the {arm.name} arm's {name} {named}; its links are {known}")
-
-
-def _imported() -> Any:
-    """PyBullet, without the line about its build that version 3.2.7 writes to standard error when it is imported."""
-    sys.stderr.flush()
-    kept = os.dup(2)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 2)
-        import pybullet
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-        os.close(nowhere)
-    return pybullet
+        return Body(body.number, body.links, body.joints, body.fingers, body.tips, tuple(pairs))
 
 
 def _table_corners(model: RobotModel) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from polyfold.errors import GarmentError
 from polyfold.plugins._host import HOST
 from polyfold.plugins._traits import MadeOf
@@ -126,7 +124,8 @@ def generate_garment(
                 f"a {garment_kind} of {size:g} m can't be folded here; give its longest side in metres, from "
                 f"{SMALLEST:g} to {LARGEST:g}"
             )
-        scale = size / float(np.ptp(garment.mesh.vertices, axis=0).max())
+        corners = garment.mesh.vertices
+        scale = size / float((corners.max(axis=0) - corners.min(axis=0)).max())
         if edge_length is not None:
             garment = _cut(generator, garment_kind, seed, edge_length, size, scale)
         mesh = replace(garment.mesh, vertices=garment.mesh.vertices * scale)

@@ -106,7 +106,7 @@ def test_what_cannot_be_done_is_refused_with_a_reason_and_nothing_is_folded(poly
         (("--task", "tshirt-haf-hem"), "tshirt-half-hem"),
         (("--config", "nowhere.toml"), "there is no file"),
         (("--outline", "nowhere.json"), "nowhere.json"),
-        (("--size", "0.5"), "mask, outline, image"),
+        (("--size", "30"), "from 0.1 to 2"),
     ],
 )
 def test_wrong_options_say_what_to_do(polyfold, arguments, says):
