@@ -153,11 +153,10 @@ class Cell:
         """
         self.set_arm(arm, joints)
         body, limits = self.arms[arm], self.clearances
+        over_table = limits.hands if pressing else max(0.0, limits.hands)
         for what, number, links in self.obstacles(arm):
             for link, distance in self._links_near(body, number, links, what == TORSO):
-                tip = what == TABLE and link in body.tips
-                allowed = limits.obstacles if not tip else limits.hands if pressing else max(0.0, limits.hands)
-                if distance < allowed:
+                if distance < (over_table if what == TABLE and link in body.tips else limits.obstacles):
                     return Near(self._name(arm, link), what, distance)
         for one, other in body.pairs:
             for _, _, distance in self._closest(body.number, body.number, limits.itself, one, other):

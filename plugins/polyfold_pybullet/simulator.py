@@ -13,13 +13,13 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from polyfold.errors import GroundingError
 from polyfold.garments import Garment
+from polyfold.geometry import Calibration, Camera
 from polyfold.plugins import create
 from polyfold.plugins.hardware import Infeasible, RobotPlan
 from polyfold.plugins.interfaces import RecordsMotion
 from polyfold.types import Action, Observation, SimState
 from polyfold_pybullet.arms import PybulletArms
 from polyfold_pybullet.depth_noise import DepthNoise
-from polyfold_pybullet.views import FEWEST
 
 if TYPE_CHECKING:
     from polyfold_pybullet.depth_noise import NoisyDepth
@@ -109,8 +109,8 @@ class CellSimulator:
         @field_validator("views")
         @classmethod
         def _are_enough(cls, views: int) -> int:
-            if 0 < views < FEWEST:
-                raise ValueError(f"calibration needs {FEWEST} views and more; 0 takes the camera as exact")
+            if 0 < views < Calibration.fewest:
+                raise ValueError(f"calibration needs {Calibration.fewest} views and more; 0 takes the camera as exact")
             return views
 
         @property
@@ -268,6 +268,6 @@ def _cell_fold(told: dict[str, Any]) -> CellFold:
     return CellFold(**{**told, "grips": tuple(Grip(**grip) for grip in told["grips"])})
 
 
-def _inside(pixels: Floats, camera: Any) -> Floats:
+def _inside(pixels: Floats, camera: Camera) -> Floats:
     """Pixels no farther out than the picture reaches: what a camera's error puts outside is at its edge."""
     return np.clip(pixels, 0.0, [camera.width - 1.0, camera.height - 1.0])

@@ -15,10 +15,9 @@ from polyfold_pybullet.looking import Eye
 
 Floats = NDArray[np.float64]
 
-BOARD = "charuco:7x5:30:22"
 SQUARES, SIDE, MARKER = (7, 5), 0.03, 0.022
-FEWEST = 5
-"""Views that calibration needs."""
+"""The board: squares across and down, sides of a square and of its marker [m]."""
+BOARD = f"charuco:{SQUARES[0]}x{SQUARES[1]}:{1000 * SIDE:g}:{1000 * MARKER:g}"
 IN_HAND = 0.13
 """How far from the fingertips the board's middle is [m]."""
 SENSOR, FOCAL = (1280, 720), 910.0
@@ -57,8 +56,8 @@ def write_views(folder: Path, count: int, seed: int) -> None:
     """
     import cv2
 
-    if count < FEWEST:
-        raise ConfigError(f"calibration needs {FEWEST} views and more, not {count}; 20 are good")
+    if count < Calibration.fewest:
+        raise ConfigError(f"calibration needs {Calibration.fewest} views and more, not {count}; 20 are good")
     folder.mkdir(parents=True, exist_ok=True)
     if any(folder.iterdir()):
         raise ConfigError(f"{folder} is not empty; give a new folder for simulated views")

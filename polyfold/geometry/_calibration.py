@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,8 +14,6 @@ from polyfold.geometry._charuco import described, find_board
 
 Floats = NDArray[np.float64]
 
-FEWEST_VIEWS = 5
-"""Views of the board that are needed; 15 to 20 that differ in tilt are good."""
 OUTLIER = 3.0
 """A view whose error is so many times the median's is left out ..."""
 GOOD = 0.5
@@ -59,7 +57,10 @@ class Calibration:
         corners: where corners of the board were seen and where they should be [px], shape (N, 2) each, by the number of
             the view from 0, of all views that show the board.
         skipped: what was wrong with each view that was not used, by its number from 0.
+        fewest: views of the board that are needed; 15 to 20 that differ in tilt are good.
     """
+
+    fewest: ClassVar[int] = 5
 
     intrinsics: Floats
     pose: Floats
@@ -150,10 +151,10 @@ def _seen(pictures: Sequence[NDArray[np.uint8]], tools: Floats, board: str) -> t
         else:
             deep = np.column_stack([places, np.zeros(len(places))])
             views.append(_View(number, tool, deep.astype(np.float32), pixels.astype(np.float32)))
-    if len(views) < FEWEST_VIEWS:
+    if len(views) < Calibration.fewest:
         first = f"; the first that is not: {next(iter(skipped.values()))}" if skipped else ""
         raise GarmentError(
-            f"the board is seen in {len(views)} of {len(pictures)} pictures, {FEWEST_VIEWS} are needed{first}"
+            f"the board is seen in {len(views)} of {len(pictures)} pictures, {Calibration.fewest} are needed{first}"
         )
     turns = [np.arccos(np.clip((np.trace(views[0].tool[:3, :3].T @ v.tool[:3, :3]) - 1) / 2, -1, 1)) for v in views]
     if max(turns) < TURN:

@@ -20,6 +20,7 @@ from polyfold.config import ComponentSpec, Experiment, read_toml
 from polyfold.errors import ConfigError, did_you_mean, validation_problem
 from polyfold.errors._hints import misplaced_truth
 from polyfold.plugins import hookspecs
+from polyfold.plugins._fabrics import LARGEST, SMALLEST
 from polyfold.plugins._inspection import moved_parameter, parameter_names
 
 Overrides = dict[str, Any]
@@ -63,7 +64,7 @@ class Study(BaseModel):
     first_seed: int = Field(default=0, ge=0)
     instructions: Literal["first", "in-turn", "all"] = "in-turn"
     edge_length: float = Field(default=0.0155, gt=0.004, le=0.05)
-    sizes: dict[str, Annotated[float, Field(ge=0.1, le=2.0)]] = Field(default_factory=dict)
+    sizes: dict[str, Annotated[float, Field(ge=SMALLEST, le=LARGEST)]] = Field(default_factory=dict)
     split: Literal["seen", "unseen"] | None = None
     steps: Literal["single", "multi"] | None = None
     reference: Literal["oracle", "ideal"] = "ideal"

@@ -183,8 +183,13 @@ def test_an_order_that_only_names_the_garment_is_carried_out_whatever_its_name(s
 
 
 @pytest.mark.parametrize(
-    "text", ["fold the trousers", "fold up the sleeve", "fold the towel", "fold the shirt in", "fold"]
-)
+    "text",
+    [
+        "fold the trousers", "fold up the sleeve", "fold the towel", "fold the shirt in", "fold",
+        "fold the left cuffs in by #1 cm", "turn up the sleeve hems by #1 cm", "fold the waistband down by #1 cm",
+        "fold the left edge up by #1 cm",
+    ],
+)  # fmt: skip
 def test_another_garment_or_part_is_no_order_for_this_one(text):
     from polyfold_offline.cloth.garment import Garment
     from polyfold_offline.reading.orders import program_of_order

@@ -86,11 +86,13 @@ def _program_of_strip(words: str, garment: Garment) -> Program | None:
     order = _OF_STRIP.fullmatch(words)
     if order is None:
         return None
-    edge = _STRIP_EDGES.get(garment.family, {}).get(order["edge"].lower(), order["edge"].lower().split()[0])
-    ways = {order[name].lower().removesuffix("s").removesuffix("ward") for name in ("way", "then") if order[name]}
-    if edge not in EDGES or ways - {"over", "in", *(way.removeprefix("to the ") for way in _AWAY_FROM[edge])}:
-        return None
-    return (Piece("strip", edge[0].upper(), "#1"),)
+    edge = (_EDGES_BY_NAME | _STRIP_EDGES.get(garment.family, {})).get(order["edge"].lower())
+    ways = {order[name].lower() for name in ("way", "then") if order[name]}
+    return (
+        (Piece("strip", edge[0].upper(), "#1"),)
+        if edge and ways <= {"over", *_INWARD, *_UPRIGHT.get(edge, ())}
+        else None
+    )
 
 
 _ANY_WAY = ("over", "across")
@@ -110,6 +112,8 @@ _OF_PART = re.compile(
 )
 
 
+_EDGES_BY_NAME = {name: edge for edge in EDGES for name in (edge, f"{edge} edge", f"{edge} side")}
+_UPRIGHT = {"top": ("down", "downward", "downwards"), "bottom": ("up", "upward", "upwards")}
 _STRIP_EDGES = {
     "tshirt": dict.fromkeys(("hem", "bottom hem", "lower hem"), "bottom"),
     "pants": {
@@ -121,7 +125,7 @@ _STRIP_EDGES = {
 
 _OF_STRIP = re.compile(
     r"(?:please,? )?(?:fold|turn|flip) (?:(?P<way>over|in|up|down) )?(?:the )?"
-    r"(?P<edge>(?:left|right|top|bottom)(?: (?:edge|side))?|[a-z ]*?(?:hems?|cuffs|ends|legs|ankles|waist|waistband))"
+    r"(?P<edge>[a-z ]+?)"
     r"(?: (?P<then>over|in|inwards?|up|upwards?|down|downwards?))? (?:by )?#1 cm(?:,? please)?[.!]?",
     re.IGNORECASE,
 )

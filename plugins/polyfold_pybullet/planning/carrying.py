@@ -75,8 +75,8 @@ class ArmWays:
         base = self._kinematics.chain.origins[0][:3, 3]
         for half in (0.0, np.pi):
             down = carried(pick, place, (yaws[0] + half, yaws[1] + half), self._hover, ROWS)
-            out = leaning(down, away_from(down, base), LEAN)
-            for poses in (down, out) if inwards is None else (leaning(down, inwards, LEAN),):
+            leant = leaning(down, away_from(down, base) if inwards is None else inwards, LEAN)
+            for poses in (down, leant) if inwards is None else (leant,):
                 reach = self._out_of_reach(poses)
                 if reach is not None:
                     self.why = self.why or reach

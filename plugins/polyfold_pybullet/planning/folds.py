@@ -11,7 +11,7 @@ from polyfold.errors import ActionError
 from polyfold.plugins.hardware import Infeasible
 from polyfold_pybullet.cell import Cell
 from polyfold_pybullet.planning.carrying import ROWS, STEP, Carry, parts
-from polyfold_pybullet.planning.grasping import apart, wide_sides
+from polyfold_pybullet.planning.grasping import towards_each_other, wide_sides
 from polyfold_pybullet.planning.moves import Failure, Moves, PlannerConfig, backwards
 from polyfold_pybullet.planning.plans import FoldPlan, Motion
 
@@ -88,7 +88,7 @@ class FoldPlanner:
         self, picks: Floats, places: Floats, arms: tuple[int, ...], failure: Failure, lean: bool
     ) -> FoldPlan | None:
         """A fold by both arms, the wrists upright or, where tools are near to each other, leaning apart."""
-        inwards = [-away for away in apart(picks, places, ROWS)] if lean else [None, None]
+        inwards = towards_each_other(picks, places, ROWS) if lean else (None, None)
         for yaws in islice(wide_sides(picks, places), 1 if lean else None):
             carries: list[list[Carry]] = [[], []]
             for arm, pick, place, towards in zip(arms, picks, places, inwards, strict=True):

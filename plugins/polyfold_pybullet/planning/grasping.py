@@ -66,13 +66,13 @@ def away_from(poses: Floats, base: Floats) -> Floats:
     return away / np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
 
 
-def apart(picks: Floats, places: Floats, rows: int) -> tuple[Floats, Floats]:
-    """Directions away from the other tool along a carry of two tools, shape (3 * rows, 2) each."""
-    start, end = ((points[0] - points[1])[:2] for points in (picks, places))
-    shares = np.repeat((1 - np.cos(np.linspace(0, np.pi, rows))) / 2, 2).reshape(rows, 2)
+def towards_each_other(picks: Floats, places: Floats, rows: int) -> tuple[Floats, Floats]:
+    """Directions from each of two tools to the other along their carry: unit vectors, shape (3 * rows, 2) each."""
+    start, end = (points[1, :2] - points[0, :2] for points in (picks, places))
     start, end = (way / max(float(np.linalg.norm(way)), 1e-9) for way in (start, end))
+    shares = ((1 - np.cos(np.linspace(0, np.pi, rows))) / 2)[:, None]
     between = start * (1 - shares) + end * shares
-    first = np.vstack([np.tile(between[0], (rows, 1)), between, np.tile(between[-1], (rows, 1))])
+    first = np.vstack([np.tile(start, (rows, 1)), between, np.tile(end, (rows, 1))])
     first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-9)
     return first, -first
 

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Vector = tuple[Finite, Finite, Finite]
-Positive = Annotated[float, Field(ge=0.01, allow_inf_nan=False)]
+Fastest = Annotated[float, Field(ge=0.01, allow_inf_nan=False)]
 
 
 class Table(BaseModel):
@@ -73,8 +73,8 @@ class Arm(BaseModel):
     park: tuple[float, ...] | None = None
     lower: tuple[float, ...] | None = None
     upper: tuple[float, ...] | None = None
-    velocity: tuple[Positive, ...] | None = None
-    acceleration: tuple[Positive, ...]
+    velocity: tuple[Fastest, ...] | None = None
+    acceleration: tuple[Fastest, ...]
     has_torso: bool = False
     fingers: tuple[str, ...] = ()
     open_width: float = 0.02
