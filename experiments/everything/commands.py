@@ -65,7 +65,7 @@ COMMANDS = (
         headings=("Garments 0–19:", ONCE),
     ),
     CommandStep("physics", 0.4, (("cloth.physics", "--seed", "0", "--folds", "400", "--scaling", "--garments", "10"),)),
-    CommandStep("extremes", 0.2, (("cloth.extremes", "--folds", "60"),)),
+    CommandStep("extremes", 0.7, (("cloth.extremes", "--folds", "1000", "--out", "{out}"),)),
     CommandStep("reality", 1.0, (("cloth.reality", "--fabric", "poplin,jersey,denim"),), needs=("ipctk",)),
     CommandStep("engines", 1.0, (("cloth.engines", "--out", "{out}"),), needs=("newton", "mujoco")),
     CommandStep("twins", 0.1, (("twins", "--data", "{data}", "--out", "{out}"),)),

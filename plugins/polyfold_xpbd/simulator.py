@@ -130,7 +130,6 @@ class XpbdSimulator:
         self._actions.append(np.concatenate([action.picks, action.places]).round(3).tolist())
         grip = solver.grip(action, self._camera, self.config.max_strain)
         self._grasped = (0,) * action.arms if grip is None else tuple(grip.grasp.plies.tolist())
-        self._short = (0.0,) * action.arms if grip is None else tuple(grip.grasp.short.round(4).tolist())
         if grip is not None and not self._undone_if_broken_off(before, lambda: solver.fold(grip, *self._frames())):
             reproduction = (
                 f"garment {garment.name!r} (seed {garment.seed}), reset seed {self._seed}, {self.config!r}, "
@@ -141,7 +140,8 @@ class XpbdSimulator:
                 f"the cloth diverged and the state before this fold was restored; reproduce with {reproduction}. "
                 "Go on with another action, or report it"
             )
-        self._slipped = (0.0,) * action.arms if grip is None else solver.slipped
+        nothing = (0.0,) * action.arms
+        self._short, self._slipped = (nothing, nothing) if grip is None else (solver.short, solver.slipped)
         return self.observe()
 
     @interruptible()

@@ -36,8 +36,13 @@ MOVING, SETTLING = 8.0, 60.0
 """Velocity damping while a gripper moves and while the cloth comes to rest [1/s]."""
 REST_SPEED, LONGEST_SETTLING = 0.003, 1.0
 """RMS speed that counts as rest [m/s], and how long to wait for it [s]."""
-SLIP = 0.25
-"""Strain of an edge at which what is held slips out of its grip: no ordinary cloth is stretched by more."""
+TAUT, SLIP = 0.22, 0.25
+"""Strain of any edge at which the grippers stand still until the cloth has followed, and of an edge at a grip at which
+what is held slips out of it: no ordinary cloth is stretched by more."""
+MORE = 0.05
+"""How much more than before a fold an edge may be stretched, if that is more than :data:`TAUT`: else cloth that is
+stretched where it lies could not be lifted at all."""
+BEARS_ALL = np.full(2, np.inf, np.float32)
 
 
 @lru_cache(maxsize=4)
@@ -58,6 +63,7 @@ class Solver:
 
     Attributes:
         slipped: of what each arm held in the last fold, the share that slipped out of its grip.
+        short: how far from its place each arm stood at the end of the last fold [m].
     """
 
     def __init__(self, mesh: Mesh, flat: NDArray[np.float64], fabric: Fabric, guaranteed: bool = False) -> None:
@@ -100,8 +106,9 @@ class Solver:
         self._table_load = np.zeros((count, 3), np.float32)
         self._set = np.zeros(hinges, np.float32)
         self._rest = np.zeros((hinges, 3), np.float32)
-        self._clock = np.zeros(5, np.int64)
+        self._clock = np.zeros(6, np.int64)
         self.slipped: tuple[float, ...] = ()
+        self.short: tuple[float, ...] = ()
         self._watch = watch_memory(count) if guaranteed else None
 
     @property
@@ -195,12 +202,21 @@ class Solver:
         self._mobility[grasp.particles] = 0.0
         held = (grasp.particles, grasp.offsets, grasp.arms, motion.directions, motion.path, motion.turns)
         held += tethers
-        alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval, SLIP)
+        alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval, self._bears())
+        stood = motion.path[-1 - int(self._clock[5])]
+        self.short = tuple((grasp.short + np.linalg.norm(motion.path[-1] - stood, axis=1)).round(4).tolist())
         arms, free = len(grasp.ends), self._mobility[grasp.particles] > 0.0
         lost, taken = np.bincount(grasp.arms, free, arms), np.bincount(grasp.arms, minlength=arms)
         self.slipped = tuple((lost / np.maximum(taken, 1)).round(2).tolist())
         self._mobility[:] = self._model.lightness
         return alive and self.settle(LONGEST_SETTLING, on_frame, interval)
+
+    def _bears(self) -> NDArray[np.float32]:
+        """What the compiled loop calls ``bears`` in a fold that begins now."""
+        first, second = self.x[self._model.edges.T]
+        lengths = np.linalg.norm(second - first, axis=1)
+        stretched = float((lengths / self._model.rest_lengths).max()) - 1.0
+        return np.array([max(TAUT, stretched + MORE), SLIP], np.float32)
 
     def carry(self, particles: NDArray[np.int64], paths: NDArray[np.float64]) -> bool:
         """Move pinned particles, indices of shape (K,), and let time pass. False if the cloth diverged.
@@ -235,17 +251,17 @@ class Solver:
         rest_speed: float,
         on_frame: Callable[[], None] | None,
         interval: float,
-        slip: float = np.inf,
+        bears: NDArray[np.float32] = BEARS_ALL,
     ) -> bool:
         # A fresh list and no loads make a stage depend on the saved state alone, so that restore() repeats exactly.
-        self._clock[:2] = 0, -1
+        self._clock[:2], self._clock[5] = (0, -1), 0
         if self._watch is not None:
             self._watch.counts[:] = 0
         self._pairs[3][: self._clock[3]], self._table_load[:], self._sharp[:] = 0.0, 0.0, False
         chunk = substeps if on_frame is None else max(1, round(interval / self.dt))
         done = 0
         while done < substeps:
-            status, done = self._advance(held, done, min(done + chunk, substeps), damping, rest_speed, slip)
+            status, done = self._advance(held, done, min(done + chunk, substeps), damping, rest_speed, bears)
             if status == DIVERGED:
                 return False
             if on_frame is not None:
@@ -261,7 +277,7 @@ class Solver:
         last: int,
         damping: float,
         rest_speed: float,
-        slip: float = np.inf,
+        bears: NDArray[np.float32] = BEARS_ALL,
     ) -> tuple[int, int]:
         model = self._model
         return advance(
@@ -269,7 +285,7 @@ class Solver:
             model.hinges, model.hinge_weights, model.elastic, self._set, self._rest, model.normal_corners, model.panel,
             model.normal_use, self._clock, self._listed, self._foreseen, self._rested, self._sharp, self._stray,
             self._order, *self._again, self._moved, *self._vertex_range, *self._edge_range, self._first, *self._pairs,
-            *self._old_pairs, *self._contacts, self._table_load, *held, model.lightness, np.float32(slip),
+            *self._old_pairs, *self._contacts, self._table_load, *held, model.lightness, bears,
             None if self._watch is None else tuple(self._watch),
             first, last, self._settings, np.float32(damping), np.float32(rest_speed),
         )  # fmt: skip

@@ -49,17 +49,18 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         vertices_again, edges_again, close, moved, vertex_starts, vertex_stops, edge_starts,
         edge_stops, first, second, side, over, load, old_second, old_side, old_over, old_load, bodies, weights,
         responses, contact_normals, inverse, source, table_load, grasped, offsets, arm, directions, path, turns, tied,
-        anchors, lengths, lightness, slip, watch, begin, end, settings, damping, rest_speed,
+        anchors, lengths, lightness, bears, watch, begin, end, settings, damping, rest_speed,
     ):  # fmt: skip
         """Run substeps ``begin`` to ``end`` in place; stop once the cloth is slower than ``rest_speed`` [m/s], if > 0.
 
         Args (beyond the model's arrays and the state's buffers):
-            clock: substeps since the stage began and since the list of pairs was made, its vertex pairs, all its pairs
-                and the contacts in use, int64, shape (5,).
+            clock: substeps since the stage began and since the list of pairs was made, its vertex pairs, all its pairs,
+                the contacts in use, and substeps in which the grippers stood still, int64, shape (6,).
             settings: time step [s], thickness, slack and cell [m], friction of table and cloth, recovery [m] and top
                 speed [m/s], share of a crease that stays, lead of bending [s], mean normal of a bend, shape (11,).
             lightness: inverse masses where nothing is held, as shares of the mean's, shape (N,).
-            slip: strain of an edge at which what is held slips out of its grip.
+            bears: strain of any edge at which the grippers stand still, and of an edge at a grip at which what is held
+                slips out of it, shape (2,).
             watch: the arrays of a :class:`Watch`; None guarantees nothing. A class in the signature would be in numba's
                 cache, and numba 0.68 loads even a stale one: moved or renamed, it could not be imported.
 
@@ -83,8 +84,6 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             if listing == IMPOSSIBLE:
                 return DIVERGED, k
             if clock[1] % LOOK_EVERY == 0:
-                if grasped.shape[0] > 0:
-                    let_go(x, mobility, lightness, edges, rest_lengths, slip)
                 crease(x, hinges, hinge_weights, elastic, settings[8], set_curvature, rest)
             if clock[1] % LOOK_EVERY == 0 or listing in (WHOLE, CROWDED):
                 clock[4] = find_vertex_contacts(
@@ -118,7 +117,9 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
             clock[1] = HORIZON if listing == CROWDED else clock[1] + 1
             predict(x, v, previous, start, mobility, dt, fastest)
             if grasped.shape[0] > 0:
-                carry(x, mobility, grasped, offsets, arm, directions, path, turns, k, fastest * dt)
+                if let_go(x, mobility, lightness, edges, rest_lengths, bears[1]) > bears[0] and clock[5] < k:
+                    clock[5] += 1
+                carry(x, mobility, grasped, offsets, arm, directions, path, turns, k - clock[5], fastest * dt)
             fall = np.float32(9.81) * dt * dt
             warm_start(x, mobility, clock[4], bodies, responses, contact_normals, source, load, table_load, fall)
             if grasped.shape[0] > 0:

@@ -144,15 +144,20 @@ def let_go(x, mobility, lightness, edges, rest_lengths, most):
         edges: pairs of particles, shape (E, 2).
         rest_lengths: [m], shape (E,).
         most: the largest strain that a grip bears.
+
+    Returns:
+        The largest strain of an edge, held or not.
     """
-    longest = (np.float32(1.0) + most) * (np.float32(1.0) + most)
+    zero, one = np.float32(0.0), np.float32(1.0)
+    longest, largest = (one + most) * (one + most), zero
     for e in range(edges.shape[0]):
         a, b = edges[e, 0], edges[e, 1]
-        if mobility[a] > np.float32(0.0) and mobility[b] > np.float32(0.0):
-            continue
         dx, dy, dz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
-        if dx * dx + dy * dy + dz * dz > longest * rest_lengths[e] * rest_lengths[e]:
+        share_2 = (dx * dx + dy * dy + dz * dz) / (rest_lengths[e] * rest_lengths[e])
+        largest = max(largest, share_2)
+        if share_2 > longest and (mobility[a] == zero or mobility[b] == zero):
             mobility[a], mobility[b] = lightness[a], lightness[b]
+    return np.sqrt(largest) - one
 
 
 @compiled
