@@ -38,6 +38,28 @@ class ComponentSpec(BaseModel):
             return {"name": value.get("name"), "params": {key: v for key, v in value.items() if key != "name"}}
         return value
 
+    def with_parameter(self, path: str, value: Any) -> ComponentSpec:
+        """A copy with one parameter set, or one in tables among them.
+
+        Args:
+            path: its name, or those of the tables and its own with dots between: ``arms.robot``.
+            value: what it is set to.
+
+        Raises:
+            ConfigError: if a part of the path is set already, and to no table.
+        """
+        return ComponentSpec(name=self.name, params=_with(self.params, path.split("."), value, f"{self.name}.{path}"))
+
+
+def _with(table: dict[str, Any], path: list[str], value: Any, owner: str) -> dict[str, Any]:
+    name, *inner = path
+    if not inner:
+        return {**table, name: value}
+    there = table.get(name, {})
+    if not isinstance(there, dict):
+        raise ConfigError(f"{owner!r} can't be set, for {name!r} is {there!r} and no table; set it as a whole")
+    return {**table, name: _with(there, inner, value, owner)}
+
 
 class Experiment(BaseModel):
     """Which components an episode is made of. Every field has a default that needs no key and no GPU."""

@@ -31,6 +31,7 @@ from polyfold_llms.litellm_client import (
     load_litellm,
     said_in,
     with_cache_marks,
+    words_instead,
 )
 from polyfold_llms.redaction import contains_secret, redact, redacted
 from polyfold_llms.retries import (
@@ -152,14 +153,15 @@ class LiteLLM:
 
     def _attempt(self, request: Mapping[str, Any]) -> Any:
         """One try. Raises TransportError."""
-        litellm = load_litellm()
+        litellm, heard = load_litellm(), _Heard()
         try:
             # litellm writes into what it is given.
-            response = litellm.completion(**copy.deepcopy(dict(request)), **self._destination())
+            response = litellm.completion(**copy.deepcopy(dict(request)), **self._destination(), logger_fn=heard)
         except litellm.ContentPolicyViolationError:
             return None
         except Exception as error:
-            response = _fault(error, litellm, _remedy(error, request, self._api_base))
+            remedy = _remedy(error, request, self._api_base)
+            response = _said_instead(error, heard.reply) or _fault(error, litellm, remedy)
         # Raised here and not in the handler, so that it does not hold what the provider sent.
         if isinstance(response, TransportError):
             raise response
@@ -198,6 +200,16 @@ class LiteLLM:
             "model_served": str(response.model or ""),
         }
         return Reply(**redacted(reply), usage=usage, cost=cost, cost_source=source, **timing)
+
+
+class _Heard:
+    """A server's reply as litellm logs it: the first of a call, for what follows is litellm's own account of it."""
+
+    def __init__(self) -> None:
+        self.reply = ""
+
+    def __call__(self, details: Mapping[str, Any]) -> None:
+        self.reply = self.reply or str(details.get("original_response") or "")
 
 
 def _check_settings(config: LiteLLM.Config) -> None:
@@ -253,6 +265,17 @@ def _fault(error: Exception, litellm: Any, remedy: str) -> TransportError:
         text = text[:_LONGEST_FAULT] + "..."
     named = (f"{status} {text}" if status else text) + remedy
     return TransportError(status if isinstance(status, int) else None, named, header_value(headers, "retry-after"))
+
+
+def _said_instead(error: Exception, reply: str) -> TransportError | None:
+    """A server's words in a 200 reply without an answer; litellm 1.106.2 loses an error that is a text, and details.
+
+    None where it has passed them on.
+    """
+    said = " ".join(redact(words_instead(reply)).split())[:_LONGEST_FAULT]
+    if not said or said in " ".join(redact(f"{error} {_first_words(error)}").split()):
+        return None
+    return TransportError(None, f"the server answered with no choices, and said: {said}")
 
 
 def _first_words(error: BaseException) -> str:

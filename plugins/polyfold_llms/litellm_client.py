@@ -119,6 +119,19 @@ def said_in(content: str | None, tool_arguments: Iterable[str], reasoning: str |
     return reasoning or content or ""
 
 
+def words_instead(reply: str) -> str:
+    """What a server says in a reply without an answer: the text of its error, detail or message; empty if none."""
+    try:
+        content = json.loads(reply)
+    except ValueError:
+        return ""
+    found = content if isinstance(content, dict) and not (content.get("choices") or content.get("content")) else {}
+    told = next((found[name] for name in ("error", "detail", "message") if found.get(name)), "")
+    while isinstance(told, (list, dict)) and told:  # FastAPI lists what is wrong, OpenAI has an object
+        told = told[0] if isinstance(told, list) else told.get("message") or told.get("msg")
+    return told if isinstance(told, str) else ""
+
+
 def with_cache_marks(name: str, messages: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """The messages, marked for Claude up to where they are the same in the next call.
 

@@ -8,7 +8,7 @@ import re
 import reprlib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
@@ -91,9 +91,20 @@ def misplaced_truth(values: Mapping[str, Any], fields: Mapping[str, FieldInfo]) 
         fields: a model's fields.
     """
     for name, value in values.items():
-        if isinstance(value, bool) and name in fields and _is_a_number(fields[name].annotation):
-            return f"has a bad value for {name!r}: {str(value).lower()} is no number; give one"
+        if name not in fields:
+            continue
+        annotation, among = fields[name].annotation, name
+        if isinstance(value, Mapping) and get_origin(annotation) is dict:  # a table of numbers
+            annotation = _plain(get_args(annotation)[1])
+            among, value = next(((f"{name}.{key}", v) for key, v in value.items() if isinstance(v, bool)), (name, None))
+        if isinstance(value, bool) and _is_a_number(annotation):
+            return f"has a bad value for {among!r}: {str(value).lower()} is no number; give one"
     return ""
+
+
+def _plain(annotation: Any) -> Any:
+    """A type without what ``Annotated`` says of it."""
+    return get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation
 
 
 def _in_plain_words(problem: ErrorDetails) -> str:

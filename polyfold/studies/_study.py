@@ -161,9 +161,10 @@ def experiment_of(study: Study, variant: str) -> Experiment:
         if not parameter:
             settings[field] = value
             continue
-        choice = settings.get(field, getattr(Experiment(), field).name)
-        named = {"name": choice} if isinstance(choice, str) else dict(choice)
-        settings[field] = {**named, parameter: value}
+        chosen = getattr(Experiment.of(**settings), field)
+        if not isinstance(chosen, ComponentSpec):
+            raise ConfigError(f"variant {variant!r} sets {path!r}, but {field!r} has no parameters; set it as a whole")
+        settings[field] = chosen.with_parameter(parameter, value)
     experiment = Experiment.of(**settings)
     _check_parameters(experiment, variant)
     return experiment

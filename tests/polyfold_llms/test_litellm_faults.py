@@ -182,6 +182,25 @@ def test_words_in_an_error_that_came_with_a_200_are_passed_on(model):
         model(Sent({"id": "x", "choices": [], "error": {"message": "out of memory"}}), tries=1).complete(QUESTION, {})
 
 
+@pytest.mark.parametrize("route", ["openai/x", "hosted_vllm/x", "ollama_chat/x", "openrouter/openai/gpt-4o"])
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"error": "model is still loading"},
+        {"detail": "model is still loading"},
+        {"detail": [{"loc": ["body"], "msg": "model is still loading"}]},
+        {"message": "model is still loading"},
+    ],
+    ids=["error", "detail", "details", "message"],
+)
+def test_a_server_that_says_no_with_a_200_is_heard_and_asked_again(server, body, route):
+    server.script = Script(Sent(body))
+    settings = {"api_base": server.address, "tries": 2, "first_wait_s": 0.0, "unlisted": True}
+    with pytest.raises(LLMError, match="said: model is still loading"):
+        create("llms", f"litellm:{route}", settings).complete(QUESTION, {})
+    assert len(server.received) == 2
+
+
 def test_a_refused_parameter_can_be_left_out_as_the_message_says(model, server):
     picky = model(error(400, "Unsupported parameter: 'max_tokens' is not supported with this model"))
     with pytest.raises(LLMError, match='to leave it out, add "max_tokens": null to the params'):

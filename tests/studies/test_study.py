@@ -48,11 +48,19 @@ def test_cells_are_every_combination_once_with_seeds_of_their_own():
         ("policy.gama", "did you mean 'policy.gamma'"),
         ("fabric.thicknes", "did you mean 'fabric.thickness'"),
         ("simulator.thickness", "use fabric.thickness instead"),
+        ("guidance.words", "'guidance' has no parameters"),
     ],
 )
 def test_a_mistyped_override_names_the_path_and_the_nearest_right_one(path, says):
     with pytest.raises(ConfigError, match=says):
         polyfold.ablate(polyfold.Study(**SMALL), path, [1])
+
+
+def test_an_override_fills_in_a_table_among_the_parameters():
+    base = {"simulator": {"name": "pybullet", "arms": {"speed": 0.5}}}
+    study = polyfold.ablate(polyfold.Study(**SMALL, base=base), "simulator.arms.robot", ["panda", "yumi"])
+    arms = [experiment_of(study, variant).simulator.params["arms"] for variant in study.variants]
+    assert arms == [{"speed": 0.5, "robot": "panda"}, {"speed": 0.5, "robot": "yumi"}]
 
 
 def test_grid_combines_settings():

@@ -53,7 +53,7 @@ def experiment_from(arguments: argparse.Namespace) -> Experiment:
     for assignment in arguments.set:
         kind, param, value = _parse(assignment, arguments.component_kinds)
         spec: ComponentSpec = getattr(experiment, kind)
-        experiment = experiment.override({kind: {"name": spec.name, "params": {**spec.params, param: value}}})
+        experiment = experiment.override({kind: spec.with_parameter(param, value)})
     return experiment
 
 
