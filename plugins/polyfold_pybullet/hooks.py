@@ -11,8 +11,9 @@ def register_robots(register):
 
 @hookimpl
 def register_simulators(register):
-    """Register the cell."""
+    """Register the cell, in simulation and for real."""
     register("pybullet", "polyfold_pybullet.simulator:CellSimulator", "a robot cell: two arms and a depth camera")
+    register("real-cell", "polyfold_pybullet.real.table:RealCell", "real cloth: your camera, your arms, your consent")
 
 
 @hookimpl

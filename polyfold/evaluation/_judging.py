@@ -13,12 +13,12 @@ from polyfold import plugins
 from polyfold.errors import GroundingError
 from polyfold.evaluation._criteria import criteria, succeeded
 from polyfold.evaluation._suites import find_task, known_tasks
-from polyfold.geometry import FoldLine
+from polyfold.geometry import FoldLine, iou
 from polyfold.tasks import Task, fold_lines
 from polyfold.tasks._ideal import fidelity, fold_ideally
 from polyfold.tasks._lines import recognise
 from polyfold.types import Episode, Observation, Outcome
-from polyfold.types._fidelity import Reference, Verdict
+from polyfold.types._fidelity import Fidelity, Reference, Verdict
 
 VERDICTS: Sequence[tuple[Verdict, str, float]] = (("good", "strict", 70.0), ("fair", "lenient", 40.0))
 """Verdicts with the criteria that earn them and the quality that they need besides, the best first: what is crumpled,
@@ -50,8 +50,10 @@ def judge(episode: Episode, task_id: str | None = None) -> Episode:
 
     The ideal lines come from the true keypoints and the task that is named, else the task one of whose own sentences
     was said, else the one that the plan is recognised as; else they are the planned lines. The fidelity says which
-    (:class:`polyfold.types.Fidelity`).
+    (:class:`polyfold.types.Fidelity`). Of real cloth only outlines are compared.
     """
+    if not episode.initial_state.known:
+        return _outlined(episode)
     kind = episode.garment.kind
     tasks = known_tasks(kind)
     asked = [task for task in tasks if _plain(episode.instruction) in map(_plain, task.instructions)]
@@ -69,6 +71,30 @@ def judge(episode: Episode, task_id: str | None = None) -> Episode:
     if recognised is not None:
         return _beside(episode, find_task(recognised, kind), "recognised")
     return _compared(episode, planned, "self-referenced")
+
+
+def _outlined(episode: Episode) -> Episode:
+    """The episode with its last outline compared with the first one, folded along the planned lines."""
+    lines = [step.fold_line for step in episode.final_attempts() if step.fold_line is not None]
+    if not lines:
+        return episode
+    found = Fidelity(iou(final_mask(episode), _outline_along(episode, lines)), math.nan, 0, "outline")
+    return replace(episode, fidelity=found, ideal_lines=tuple(lines))
+
+
+def _outline_along(episode: Episode, lines: Sequence[FoldLine]) -> NDArray[np.bool_]:
+    """The first outline folded along lines, bool, shape (H, W): each mirrors what lies left of it."""
+    mask = first_mask(episode)
+    rows, columns = np.indices(mask.shape)
+    pixels = np.stack([columns, rows], axis=-1).astype(float)
+    for line in lines:
+        lifted = line.lifts(pixels)
+        column, row = np.rint(line.mirror(pixels)).astype(int).transpose(2, 0, 1)
+        inside = (0 <= row) & (row < mask.shape[0]) & (0 <= column) & (column < mask.shape[1])
+        came = np.zeros_like(mask)
+        came[inside] = (mask & lifted)[row[inside], column[inside]]
+        mask = (mask & ~lifted) | came
+    return mask
 
 
 def _doubted(episode: Episode, asked: Task) -> Episode:

@@ -67,7 +67,11 @@ __all__ = [
 
 @runtime_checkable
 class Simulator(Protocol):
-    """Cloth on a table under a camera, moved by one or two arms. Deterministic for a seed on one machine."""
+    """Cloth on a table under a camera, moved by one or two arms. Deterministic for a seed on one machine.
+
+    One that is no simulation but a real table says so by ``unattended = False``, and its state is not known; studies,
+    which fold the same garments again and again, refuse it.
+    """
 
     def reset(self, garment: Garment, seed: int) -> Observation:
         """Lay the garment flat in a pose drawn from ``seed`` and return the first picture."""

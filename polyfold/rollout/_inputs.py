@@ -81,6 +81,11 @@ def _guidance(start: Start) -> dict[str, Any]:
     """Accurate help; with ``final`` guidance the only subgoal is the goal."""
     if start.task is None:
         raise ConfigError("this agent needs guidance, which is made from a task; name one (--task)")
+    if not start.state.known:
+        raise ConfigError(
+            "this agent needs guidance, which is made from true keypoints, and of real cloth nobody knows them; "
+            "use an agent that looks, such as polyfold"
+        )
     made = privileged_inputs(start.task, start.garment, start.state, start.observation)
     final = start.experiment.guidance == "final"
     return {

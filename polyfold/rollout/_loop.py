@@ -16,6 +16,7 @@ from polyfold.errors import (
     PlanError,
     PolyfoldError,
     RefusedError,
+    RobotError,
     SimulationError,
 )
 from polyfold.garments import Garment
@@ -37,6 +38,7 @@ STAGES: Sequence[tuple[type[PolyfoldError], str]] = (
     (LLMError, "unanswered"),
     (ActionError, "policy"),
     (SimulationError, "execution"),
+    (RobotError, "execution"),
 )
 """Errors that end an episode, and the stage of its failure; the first that fits counts."""
 

@@ -167,6 +167,12 @@ def experiment_of(study: Study, variant: str) -> Experiment:
         settings[field] = chosen.with_parameter(parameter, value)
     experiment = Experiment.of(**settings)
     _check_parameters(experiment, variant)
+    name = experiment.simulator.name
+    if not getattr(plugins.component_class("simulators", name.partition(":")[0]), "unattended", True):
+        raise ConfigError(
+            f"variant {variant!r} folds on a real table ({name!r}), where nobody knows the cloth's true state and "
+            "somebody must lay out each garment; study a simulation, and fold there by 'polyfold fold'"
+        )
     return experiment
 
 

@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-Reference = Literal["task", "sentence", "recognised", "self-referenced"]
+Reference = Literal["task", "sentence", "recognised", "self-referenced", "outline"]
 """Who says which fold was wanted: the caller named a task; the sentence is one of a task's own; nobody, and the plan is
-recognised as a task's; nobody, and the plan is all there is."""
+recognised as a task's; nobody, and the plan is all there is; or nobody, and of real cloth the outline is all that was
+measured."""
 
 Verdict = Literal["good", "fair", "bad"]
 
@@ -23,7 +24,8 @@ class Fidelity:
             than 20 mm are and where they should be; NaN when it moves none.
         moved: how many particles that are.
         reference: who says which fold was wanted. With ``recognised`` and ``self-referenced`` nobody does: then a wrong
-            plan that is executed well scores well.
+            plan that is executed well scores well. With ``outline`` the outline seen first, folded along the planned
+            lines, is what the last one is compared with: plies that slid or were left below are not seen.
         verdict: ``good`` within the strict criterion and of quality 70 or more, ``fair`` within the lenient one and of
             40 or more, else ``bad``; None where they are not installed, and where the sentence contradicts the task.
         quality: graded, 0 to 100; NaN where that metric is not installed.
@@ -54,6 +56,11 @@ class Fidelity:
             asked += f", although the sentence asks for {self.contradicted}" if self.contradicted else ""
             quality = "" if math.isnan(self.quality) else f", quality {self.quality:.0f} of 100"
             return f"{self.verdict or 'compared'}: {self._figures()}{quality}; beside the ideal {task}, {asked}"
+        if self.reference == "outline":
+            return (
+                f"{self._figures()}, beside the outline seen first folded along the planned lines; nobody measured real "
+                "cloth: look at the picture"
+            )
         ended = "not as planned" if self.verdict == "bad" else "as planned"
         if self.reference == "recognised":
             return (

@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 class SimState:
     """Privileged state of a simulated cloth: for metrics, oracle and training rewards, never for agents.
 
+    Of real cloth nobody knows it: then it has no particles, and says ``known`` of itself no more.
+
     Attributes:
         positions: particle positions [m], shape (N, 3).
         velocities: particle velocities [m/s], shape (N, 3).
@@ -38,6 +40,17 @@ class SimState:
     grasped: tuple[int, ...] | None = None
     short: tuple[float, ...] | None = None
     slipped: tuple[float, ...] | None = None
+
+    @classmethod
+    def of_real_cloth(cls, camera: Camera, grasped: tuple[int, ...] | None = None) -> SimState:
+        """The state that nobody knows, under a camera, with what the hands measured of their last grips."""
+        nothing = np.zeros((0, 3))
+        return cls(nothing, nothing, {}, camera, grasped=grasped)
+
+    @property
+    def known(self) -> bool:
+        """Whether it is known where the cloth is; else only pictures tell how a fold came out."""
+        return len(self.positions) > 0
 
     def keypoint_positions(self) -> dict[str, Floats]:
         """Named keypoint -> position [m], shape (3,)."""

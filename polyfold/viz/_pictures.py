@@ -37,7 +37,7 @@ def result_of(episode: Episode) -> NDArray[np.uint8]:
 
 
 def _ideal_outline(episode: Episode) -> NDArray[np.float64] | None:
-    if not episode.ideal_lines:
+    if not episode.ideal_lines or not episode.initial_state.known:
         return None
     return contour_of(fold_ideally(episode.initial_state, episode.garment, episode.ideal_lines).mask)
 
