@@ -26,6 +26,7 @@ from polyfold_llms import model_table
 from polyfold_llms.addresses import check_address, proxy_in_the_way
 from polyfold_llms.litellm_client import (
     JSON_ANSWER,
+    Heard,
     as_prompted,
     carried_format,
     load_litellm,
@@ -153,7 +154,7 @@ class LiteLLM:
 
     def _attempt(self, request: Mapping[str, Any]) -> Any:
         """One try. Raises TransportError."""
-        litellm, heard = load_litellm(), _Heard()
+        litellm, heard = load_litellm(), Heard()
         try:
             # litellm writes into what it is given.
             response = litellm.completion(**copy.deepcopy(dict(request)), **self._destination(), logger_fn=heard)
@@ -200,16 +201,6 @@ class LiteLLM:
             "model_served": str(response.model or ""),
         }
         return Reply(**redacted(reply), usage=usage, cost=cost, cost_source=source, **timing)
-
-
-class _Heard:
-    """A server's reply as litellm logs it: the first of a call, for what follows is litellm's own account of it."""
-
-    def __init__(self) -> None:
-        self.reply = ""
-
-    def __call__(self, details: Mapping[str, Any]) -> None:
-        self.reply = self.reply or str(details.get("original_response") or "")
 
 
 def _check_settings(config: LiteLLM.Config) -> None:

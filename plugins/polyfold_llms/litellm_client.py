@@ -119,6 +119,17 @@ def said_in(content: str | None, tool_arguments: Iterable[str], reasoning: str |
     return reasoning or content or ""
 
 
+class Heard:
+    """A server's reply as litellm logs it: the first of a call, for what follows is litellm's own account of it."""
+
+    def __init__(self) -> None:
+        self.reply = ""
+
+    def __call__(self, details: Mapping[str, Any]) -> None:
+        """For litellm to call as its ``logger_fn``."""
+        self.reply = self.reply or str(details.get("original_response") or "")
+
+
 def words_instead(reply: str) -> str:
     """What a server says in a reply without an answer: the text of its error, detail or message; empty if none."""
     try:

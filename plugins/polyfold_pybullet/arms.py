@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from polyfold_pybullet.planning import FoldPlan, FoldPlanner, Motion
 
 Floats = NDArray[np.float64]
+
+THERE = 0.005
+"""Joints so near to where a plan begins are there [rad]: arms that rest are measured with an error."""
 
 
 class PybulletArms:
@@ -121,13 +124,12 @@ class PybulletArms:
             raise RobotError("this is no plan of these arms; give one that their plan method returned")
         self._refuse_after_a_stop()
         for joints, now in zip(plan.motions[0].joints, self._joints, strict=True):
-            if np.abs(joints[0] - now).max() > 1e-3:
+            if np.abs(joints[0] - now).max() > THERE:
                 raise RobotError("the arms are not where the plan begins; call park first")
         clock = 0.0
         for motion in plan.motions:
             if list(motion.closed) != self._closed:
-                self._closed = list(motion.closed)
-                self._show()
+                self._set_hands(motion.closed)
                 clock += plan.settling
             clock = self._run(motion, clock, watch)
 
@@ -152,13 +154,17 @@ class PybulletArms:
         """Open the hands and bring the arms to where they wait; allowed after a stop."""
         _, planner = self._ready()
         self._stopped.clear()
-        self._closed = [False, False]
+        self._set_hands((False, False))
         moved = planner.moves.parking(np.hstack(self._joints))
         self._do(moved, "move the arms apart with move_linear first")
 
     def stop(self) -> None:
         """Stop all arms where they are, from any thread; until parked they do nothing else."""
         self._stopped.set()
+
+    def _set_hands(self, closed: Sequence[bool]) -> None:
+        self._closed = list(closed)
+        self._show()
 
     def _do(self, moved: list[Motion] | Infeasible, advice: str) -> None:
         self._show()

@@ -5,8 +5,18 @@ from polyfold.plugins.hookspecs import hookimpl
 
 @hookimpl
 def register_robots(register):
-    """Register the arms."""
+    """Register the arms, simulated and real."""
     register("pybullet", "polyfold_pybullet.arms:PybulletArms", "two Pandas, a YuMi or arms by URDF, in PyBullet")
+    drivers = "polyfold_pybullet.drivers"
+    register("abb", f"{drivers}.abb:AbbArms", "two ABB arms at one IRC5, such as a YuMi", ("abb-motion-program-exec",))
+    register("ur", f"{drivers}.ur:UrArms", "two UR arms with Robotiq hands, a controller each", ("ur_rtde",))
+
+
+@hookimpl
+def register_cameras(register):
+    """Register the cameras."""
+    realsense = "polyfold_pybullet.drivers.realsense:RealSense"
+    register("realsense", realsense, "an Intel RealSense, or a recording of one", ("pyrealsense2",))
 
 
 @hookimpl

@@ -1,4 +1,4 @@
-"""Where arms give way: two that hold the same cloth can't part farther than it reaches between them."""
+"""Where arms give way: two that hold the same cloth can't part farther than it reaches, and none tears it."""
 
 from __future__ import annotations
 
@@ -12,6 +12,23 @@ from polyfold_xpbd.tethers import Tethers
 
 TURNS_AGAIN = 4
 """How often ends are drawn together: each time the held patches turn another way, and so reach differently."""
+TAUT, SLIP = 0.22, 0.25
+"""Strain of any edge at which the grippers stand still until the cloth has followed, and of an edge at a grip at which
+what is held slips out of it: no ordinary cloth is stretched by more."""
+MORE = 0.05
+"""How much more than before a fold an edge may be stretched, if that is more than :data:`TAUT`: else cloth that is
+stretched where it lies could not be lifted at all."""
+ALL = np.full(2, np.inf, np.float32)
+"""What :func:`borne` is for grippers that neither give way nor let go."""
+
+
+def borne(strain: NDArray[np.floating]) -> NDArray[np.float32]:
+    """The strains at which grippers stand still and lose what they hold, shape (2,).
+
+    Args:
+        strain: of the edges before the fold, shape (E,).
+    """
+    return np.array([max(TAUT, float(strain.max(initial=0.0)) + MORE), SLIP], np.float32)
 
 
 def give_way(grasp: Grasp, tethers: Tethers, strain: float) -> Grasp:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from polyfold.garments import Fabric, Mesh
 from polyfold.geometry import Camera
 from polyfold.types import Action
-from polyfold_xpbd.giving import give_way
+from polyfold_xpbd.giving import ALL, borne, give_way
 from polyfold_xpbd.grasp import Grasp, plan_motion, take_hold
 from polyfold_xpbd.kernels.guarantee.close import watch_memory
 from polyfold_xpbd.kernels.loop import DIVERGED, SETTLED, advance
@@ -36,13 +36,6 @@ MOVING, SETTLING = 8.0, 60.0
 """Velocity damping while a gripper moves and while the cloth comes to rest [1/s]."""
 REST_SPEED, LONGEST_SETTLING = 0.003, 1.0
 """RMS speed that counts as rest [m/s], and how long to wait for it [s]."""
-TAUT, SLIP = 0.22, 0.25
-"""Strain of any edge at which the grippers stand still until the cloth has followed, and of an edge at a grip at which
-what is held slips out of it: no ordinary cloth is stretched by more."""
-MORE = 0.05
-"""How much more than before a fold an edge may be stretched, if that is more than :data:`TAUT`: else cloth that is
-stretched where it lies could not be lifted at all."""
-BEARS_ALL = np.full(2, np.inf, np.float32)
 
 
 @lru_cache(maxsize=4)
@@ -202,7 +195,9 @@ class Solver:
         self._mobility[grasp.particles] = 0.0
         held = (grasp.particles, grasp.offsets, grasp.arms, motion.directions, motion.path, motion.turns)
         held += tethers
-        alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval, self._bears())
+        first, second = self.x[self._model.edges.T]
+        bears = borne(np.linalg.norm(second - first, axis=1) / self._model.rest_lengths - 1.0)
+        alive = self._run(held, len(motion.path), MOVING, 0.0, on_frame, interval, bears)
         stood = motion.path[-1 - int(self._clock[5])]
         self.short = tuple((grasp.short + np.linalg.norm(motion.path[-1] - stood, axis=1)).round(4).tolist())
         arms, free = len(grasp.ends), self._mobility[grasp.particles] > 0.0
@@ -210,13 +205,6 @@ class Solver:
         self.slipped = tuple((lost / np.maximum(taken, 1)).round(2).tolist())
         self._mobility[:] = self._model.lightness
         return alive and self.settle(LONGEST_SETTLING, on_frame, interval)
-
-    def _bears(self) -> NDArray[np.float32]:
-        """What the compiled loop calls ``bears`` in a fold that begins now."""
-        first, second = self.x[self._model.edges.T]
-        lengths = np.linalg.norm(second - first, axis=1)
-        stretched = float((lengths / self._model.rest_lengths).max()) - 1.0
-        return np.array([max(TAUT, stretched + MORE), SLIP], np.float32)
 
     def carry(self, particles: NDArray[np.int64], paths: NDArray[np.float64]) -> bool:
         """Move pinned particles, indices of shape (K,), and let time pass. False if the cloth diverged.
@@ -251,7 +239,7 @@ class Solver:
         rest_speed: float,
         on_frame: Callable[[], None] | None,
         interval: float,
-        bears: NDArray[np.float32] = BEARS_ALL,
+        bears: NDArray[np.float32] = ALL,
     ) -> bool:
         # A fresh list and no loads make a stage depend on the saved state alone, so that restore() repeats exactly.
         self._clock[:2], self._clock[5] = (0, -1), 0
@@ -277,7 +265,7 @@ class Solver:
         last: int,
         damping: float,
         rest_speed: float,
-        bears: NDArray[np.float32] = BEARS_ALL,
+        bears: NDArray[np.float32] = ALL,
     ) -> tuple[int, int]:
         model = self._model
         return advance(

@@ -90,7 +90,7 @@ def _outline_along(episode: Episode, lines: Sequence[FoldLine]) -> NDArray[np.bo
     for line in lines:
         lifted = line.lifts(pixels)
         column, row = np.rint(line.mirror(pixels)).astype(int).transpose(2, 0, 1)
-        inside = (0 <= row) & (row < mask.shape[0]) & (0 <= column) & (column < mask.shape[1])
+        inside = (row >= 0) & (row < mask.shape[0]) & (column >= 0) & (column < mask.shape[1])
         came = np.zeros_like(mask)
         came[inside] = (mask & lifted)[row[inside], column[inside]]
         mask = (mask & ~lifted) | came

@@ -58,8 +58,8 @@ class Fidelity:
             return f"{self.verdict or 'compared'}: {self._figures()}{quality}; beside the ideal {task}, {asked}"
         if self.reference == "outline":
             return (
-                f"{self._figures()}, beside the outline seen first folded along the planned lines; nobody measured real "
-                "cloth: look at the picture"
+                f"{self._figures()}, beside the outline seen first folded along the planned lines; nobody measured "
+                "the cloth itself: look at the picture"
             )
         ended = "not as planned" if self.verdict == "bad" else "as planned"
         if self.reference == "recognised":

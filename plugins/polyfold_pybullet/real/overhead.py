@@ -66,19 +66,21 @@ class Overhead:
         import cv2
 
         eye = eye or Eye(frame.intrinsics, frame.extrinsics)
-        heights = np.zeros((self.camera.height, self.camera.width), np.float32)
-        for _ in range(2):  # where cloth is high, the ray from above meets it elsewhere than at the table
-            columns, rows, distance = self._seen_at(heights, eye)
-            depth = cv2.remap(frame.depth, columns, rows, cv2.INTER_NEAREST, borderValue=float("nan"))
-            heights = self._heights(columns, rows, np.asarray(depth, np.float32), eye)
-            heights = np.where(np.isfinite(heights), heights, np.float32(0.0))
-        height, width = frame.depth.shape
-        inside = (distance > 0) & (columns >= 0) & (rows >= 0) & (columns <= width - 1) & (rows <= height - 1)
-        if inside.mean() < SEEN:
+        if not np.isfinite(eye.pose).all():
             raise RobotError(
-                f"the camera sees {inside.mean():.0%} of the view; move the view (centre, extent), or the camera"
+                "the camera does not know where it is; calibrate it with 'polyfold calibrate', and name camera.json as "
+                "the cell's calibration"
             )
-        above = self._heights(columns, rows, np.asarray(depth, np.float32), eye)
+        flat = np.zeros((self.camera.height, self.camera.width), np.float32)
+        columns, rows = self._seen_at(flat, eye)
+        height, width = frame.depth.shape
+        inside = ((columns >= 0) & (rows >= 0) & (columns <= width - 1) & (rows <= height - 1)).mean()
+        if inside < SEEN:
+            raise RobotError(f"the camera sees {inside:.0%} of the view; move the view (centre, extent), or the camera")
+        # Where cloth is high, the ray from above meets it elsewhere than at the table.
+        risen = self._measured(frame.depth, columns, rows, eye)
+        columns, rows = self._seen_at(np.where(np.isfinite(risen), risen, np.float32(0.0)), eye)
+        above = self._measured(frame.depth, columns, rows, eye)
         rgb = cv2.remap(frame.rgb, columns, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
         return Observation(np.asarray(rgb, np.uint8), (self.camera.elevation - above).astype(np.float32), self.camera)
 
@@ -93,22 +95,23 @@ class Overhead:
             [cosine * x - sine * y + self.centre[0], sine * x + cosine * y + self.centre[1], z + self.table], axis=-1
         )
 
-    def _seen_at(
-        self, heights: NDArray[np.float32], eye: Eye
-    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-        """Columns and rows [px] at which the camera sees what lies so high, and how far off it is [m]."""
+    def _seen_at(self, heights: NDArray[np.float32], eye: Eye) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Columns and rows [px] at which the camera sees what lies so high; NaN for what lies behind it."""
         rows, columns = np.indices(heights.shape)
         points = self._in_the_robots_world(self.camera.to_world(np.stack([columns, rows], axis=-1), heights))
         there = np.linalg.inv(eye.pose)
         seen = (points @ there[:3, :3].T + there[:3, 3]) @ eye.intrinsics.T
         depth = np.where(seen[..., 2] > 1e-6, seen[..., 2], np.nan)
         where = seen[..., :2] / depth[..., None]
-        return where[..., 0].astype(np.float32), where[..., 1].astype(np.float32), seen[..., 2].astype(np.float32)
+        return where[..., 0].astype(np.float32), where[..., 1].astype(np.float32)
 
-    def _heights(
-        self, columns: NDArray[np.float32], rows: NDArray[np.float32], depth: NDArray[np.float32], eye: Eye
+    def _measured(
+        self, image: NDArray[np.float32], columns: NDArray[np.float32], rows: NDArray[np.float32], eye: Eye
     ) -> NDArray[np.float32]:
         """Heights above the table [m] of what is measured at pixels of the camera; NaN where nothing is."""
+        import cv2
+
+        depth = cv2.remap(image, columns, rows, cv2.INTER_NEAREST, borderValue=float("nan"))
         inverse = np.linalg.inv(eye.intrinsics).T
         # A pixel's ray and not the view's own: depth is of the pixel that is nearest.
         pixels = np.stack([np.rint(columns), np.rint(rows), np.ones_like(columns)], axis=-1)

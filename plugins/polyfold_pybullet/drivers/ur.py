@@ -1,0 +1,130 @@
+"""The robot ``ur``: two arms of Universal Robots, each with a controller of its own, through ``ur_rtde``."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from polyfold.errors import RobotError
+from polyfold_pybullet.drivers.driven import DrivenArms
+from polyfold_pybullet.drivers.robotiq import PORT, RobotiqHand
+from polyfold_pybullet.planning import Motion
+from polyfold_pybullet.robots import RobotModel
+
+Floats = NDArray[np.float64]
+
+LOOKAHEAD, GAIN = 0.1, 300
+"""How ``servoJ`` smooths what it is sent [s], and how stiffly it follows; the library's own examples use these."""
+SLOWS = 2.0
+"""Deceleration of the tool at the end and on a stop [m/s²]."""
+
+
+class UrArms(DrivenArms):
+    """Two UR arms at a table. Implements :class:`polyfold.plugins.hardware.Robot`.
+
+    Set points go to both controllers in step; a controller that stops for its own reasons stops the other one.
+    """
+
+    class Config(DrivenArms.Config):
+        """Where the controllers are, and what stands at the table."""
+
+        hosts: tuple[str, str] = Field(description="addresses of the left and the right arm's controller")
+        model: RobotModel | None = Field(description="both arms: their URDF, base, joints, tool, postures and limits")
+        interval: float = Field(default=0.008, ge=0.002, le=0.1, description="time between two set points [s]")
+        hand_port: int = Field(default=PORT, ge=1, le=65535, description="port of the Robotiq hands' URCap")
+
+    def __init__(self, config: Config) -> None:
+        if config.model is not None:
+            strokes = [2 * arm.open_width for arm in config.model.arms]
+        else:
+            strokes = [0.085, 0.085]
+        hands = [
+            RobotiqHand(host, stroke, config.hand_port) for host, stroke in zip(config.hosts, strokes, strict=True)
+        ]
+        super().__init__(config, UrLink(config.hosts, hands))
+
+
+class UrLink:
+    """The way to two controllers. Implements :class:`polyfold_pybullet.drivers.driven.Link`."""
+
+    def __init__(self, hosts: tuple[str, str], hands: list[RobotiqHand]) -> None:
+        self._hosts, self._hands = hosts, hands
+        self._control: list[Any] = []
+        self._receive: list[Any] = []
+
+    def connect(self) -> None:
+        """Open both controllers and hands."""
+        import rtde_control  # pyright: ignore[reportMissingImports]
+        import rtde_receive  # pyright: ignore[reportMissingImports]
+
+        for host, hand in zip(self._hosts, self._hands, strict=True):
+            try:
+                self._receive.append(rtde_receive.RTDEReceiveInterface(host))
+                self._control.append(rtde_control.RTDEControlInterface(host))
+            except RuntimeError as error:
+                raise RobotError(
+                    f"the controller at {host} can't be reached ({error}); check its address, switch it on, and set it "
+                    "to remote control"
+                ) from error
+            hand.connect()
+
+    def close(self) -> None:
+        """Release the controllers."""
+        for hand in self._hands:
+            hand.close()
+        for control in self._control:
+            control.stopScript()
+        for interface in (*self._control, *self._receive):
+            interface.disconnect()
+        self._control, self._receive = [], []
+
+    def joints(self, arm: int) -> Floats:
+        """Joint angles, as measured [rad], shape (6,)."""
+        return np.array(self._receive[arm].getActualQ(), float)
+
+    def follow(self, motion: Motion, interval: float, each: Callable[[float], None]) -> None:
+        """Send both arms their set points, one after the other in every interval."""
+        began = time.monotonic()
+        with self._serving():
+            for count in range(int(np.ceil(motion.duration / interval)) + 1):
+                at = min(count * interval, motion.duration)
+                each(at)
+                for arm, joints in enumerate(motion.at(np.array([at]))):
+                    self._refuse_if_stopped(arm)
+                    self._control[arm].servoJ(joints[0].tolist(), 0.0, 0.0, interval, LOOKAHEAD, GAIN)
+                time.sleep(max(0.0, began + (count + 1) * interval - time.monotonic()))
+            time.sleep(2 * LOOKAHEAD)  # what was sent last is reached so much later
+
+    def grip(self, arm: int, closed: bool) -> float:
+        """Close or open a hand, and say how wide it is then [m]."""
+        return self._hands[arm].grip(closed)
+
+    def stop(self) -> None:
+        """Stop both arms where they are."""
+        for control in self._control:
+            control.servoStop(SLOWS)
+
+    @contextmanager
+    def _serving(self) -> Iterator[None]:
+        try:
+            yield
+        finally:
+            self.stop()
+
+    def _refuse_if_stopped(self, arm: int) -> None:
+        receive = self._receive[arm]
+        if receive.isEmergencyStopped():
+            raise RobotError(f"the emergency stop of {self._hosts[arm]} is pressed; release it, then call park")
+        if receive.isProtectiveStopped():
+            raise RobotError(
+                f"{self._hosts[arm]} stopped to protect itself; look what it touches, unlock it at the pendant, "
+                "then call park"
+            )
+        if not receive.isConnected():
+            raise RobotError(f"the connection to {self._hosts[arm]} is lost; both arms were stopped")

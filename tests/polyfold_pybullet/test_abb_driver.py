@@ -1,0 +1,147 @@
+"""ABB's arms through the real client, against a controller of this machine."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+from loopback_irc5 import Irc5, as_abb, serve
+from polyfold_pybullet.planning import FoldPlan
+
+from polyfold import plugins
+from polyfold.errors import ConfigError, RobotError
+from polyfold.plugins.hardware import Robot
+
+PICKS, PLACES = [[-0.12, -0.08, 0.0], [0.12, -0.08, 0.0]], [[-0.12, 0.08, 0.002], [0.12, 0.08, 0.002]]
+
+
+@pytest.fixture
+def irc5(pandas):
+    from polyfold_pybullet.robots import panda
+
+    return Irc5([as_abb(arm.park or arm.home) for arm in panda().arms])
+
+
+@pytest.fixture
+def arms(irc5):
+    with serve(irc5) as url:
+        made = plugins.create("robots", "abb", {"url": url, "robot": "panda"})
+        assert isinstance(made, Robot)
+        yield made
+        made.close()
+
+
+def test_connecting_moves_nothing_and_reads_where_the_arms_are(arms, irc5):
+    arms.connect()
+    *axes, seventh = irc5.joints["ROB_1"]
+    assert np.degrees(arms.joint_state(0)) == pytest.approx(np.insert(axes, 2, seventh))
+    assert not irc5.ran
+    assert not irc5.signals
+    assert arms.tcp_pose(0)[2, 3] > 0.1
+
+
+def test_a_fold_runs_as_programs_of_both_arms_in_step(arms, irc5):
+    arms.connect()
+    plan = arms.plan(PICKS, PLACES)
+    assert isinstance(plan, FoldPlan)
+    told = []
+    arms.execute(plan, told.append)
+    assert len(irc5.ran) == len(plan.motions)
+    for motion, programs in zip(plan.motions, irc5.ran, strict=True):
+        assert len(programs[0]) == len(programs[1]), "both have a point for each point of the other"
+        for joints, rows in zip(motion.joints, programs, strict=True):
+            assert rows[-1][0][:7] == pytest.approx(as_abb(joints[-1]), abs=1e-3)
+            assert [row[2][0] for row in rows] == [0.0] * (len(rows) - 1) + [1.0], "only the last point is a stop"
+            assert all(1.0 <= row[1][0] <= 260.0 for row in rows), "no tool is faster than 0.25 m/s and a rounding"
+    assert set(irc5.signals) == {"polyfold_close_1", "polyfold_close_2"}
+    assert set(irc5.signals.values()) == {"0"}, "the hands are open at the end"
+    assert told
+
+
+def test_speeds_bring_a_move_to_its_planned_time(arms, irc5):
+    arms.connect()
+    plan = arms.plan(PICKS, PLACES)
+    motion = max(plan.motions, key=lambda motion: motion.duration)
+    left, _ = arms._link.programs(motion)
+    kinematics = arms._ready()[1].kinematics[0]
+    spent = 0.0
+    poses = [kinematics.forward(motion.joints[0][0])]
+    for command in left._commands[1:-1]:
+        joints = np.radians(np.insert(command.to_joint_pos.robax, 2, command.to_joint_pos.extax[0]))
+        poses.append(kinematics.forward(joints))
+        way = 1000 * np.linalg.norm(poses[-1][:3, 3] - poses[-2][:3, 3])
+        spent += way / command.speed.v_tcp
+    assert spent == pytest.approx(motion.duration, rel=0.25)
+
+
+@pytest.mark.parametrize(
+    ("trouble", "says"),
+    [("motoroff", r"motors .* are off"), ("running", "a program runs"), ("away", "said: .*look at its event log")],
+)
+def test_a_controller_that_is_not_ready_is_told_so(irc5, trouble, says):
+    with serve(irc5) as url:
+        if trouble == "motoroff":
+            irc5.motors = "motoroff"
+        if trouble == "running":
+            irc5.running = True
+        there = "http://127.0.0.1:9" if trouble == "away" else url
+        made = plugins.create("robots", "abb", {"url": there, "robot": "panda"})
+        with pytest.raises(RobotError, match=says):
+            made.connect()
+
+
+def test_a_program_that_fails_stops_everything_and_says_what_the_controller_says(arms, irc5):
+    arms.connect()
+    plan = arms.plan(PICKS, PLACES)
+    irc5.fails = "joint out of range"
+    with pytest.raises(RobotError, match="joint out of range"):
+        arms.execute(plan)
+    with pytest.raises(RobotError, match="call park"):
+        arms.gripper(0, True)
+
+
+def test_a_stop_from_another_thread_ends_the_program_and_park_goes_on(arms, irc5):
+    arms.connect()
+    plan = arms.plan(PICKS, PLACES)
+    irc5.seconds = 5.0
+    threading.Timer(0.3, arms.stop).start()
+    clock = time.monotonic()
+    with pytest.raises(RobotError, match="were stopped"):
+        arms.execute(plan)
+    assert time.monotonic() - clock < 3.0
+    assert irc5.stopped
+    irc5.seconds = 0.0
+    arms.park()
+
+
+def test_an_arm_that_does_not_arrive_is_noticed(arms, irc5):
+    arms.connect()
+    plan = arms.plan(PICKS, PLACES)
+    irc5.blocked = {1}
+    with pytest.raises(RobotError, match="rad from where its motion ends"):
+        arms.execute(plan)
+
+
+def test_arms_that_are_elsewhere_do_not_begin(arms, irc5):
+    arms.connect()
+    plan = arms.plan(PICKS, PLACES)
+    irc5.joints["ROB_2"][1] += 5.0
+    with pytest.raises(RobotError, match="call park first"):
+        arms.execute(plan)
+    assert not irc5.ran
+
+
+def test_a_hand_is_as_wide_as_its_signal_says(irc5):
+    with serve(irc5) as url:
+        settings = {"url": url, "robot": "panda", "width_signals": ["width_1", "width_2"]}
+        made = plugins.create("robots", "abb", settings)
+        made.connect()
+        irc5.signals["width_2"] = "31.5"
+        assert made.gripper(1, True) == pytest.approx(0.0315)
+        assert irc5.signals["polyfold_close_2"] == "1"
+        made.close()
+
+
+def test_names_of_tasks_that_would_share_a_file_are_refused():
+    with pytest.raises(ConfigError, match="end in a number of their own"):
+        plugins.create("robots", "abb", {"url": "http://x", "tasks": ["T_ROB_L", "T_ROB_R"]})
