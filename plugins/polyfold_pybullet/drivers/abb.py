@@ -48,8 +48,10 @@ class AbbArms(DrivenArms):
         password_env: str = Field(
             default="ABB_PASSWORD", description="environment variable with the password; ABB's own if it is not set"
         )
-        tasks: tuple[str, str] = Field(default=("T_ROB1", "T_ROB2"), description="RAPID tasks of the two arms")
-        units: tuple[str, str] = Field(default=("ROB_1", "ROB_2"), description="mechanical units of the two arms")
+        tasks: tuple[str, str] = Field(
+            default=("T_ROB1", "T_ROB2"), description="RAPID tasks of the arms, the left one first"
+        )
+        units: tuple[str, str] = Field(default=("ROB_1", "ROB_2"), description="their mechanical units")
         close_signals: tuple[str, str] = Field(
             default=("polyfold_close_1", "polyfold_close_2"), description="digital signals that close the hands"
         )

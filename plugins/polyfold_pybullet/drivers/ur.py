@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from polyfold.errors import RobotError
 from polyfold_pybullet.drivers.driven import DrivenArms
@@ -39,11 +39,16 @@ class UrArms(DrivenArms):
         interval: float = Field(default=0.008, ge=0.002, le=0.1, description="time between two set points [s]")
         hand_port: int = Field(default=PORT, ge=1, le=65535, description="port of the Robotiq hands' URCap")
 
+        @field_validator("model")
+        @classmethod
+        def _is_told(cls, model: RobotModel | None) -> RobotModel:
+            if model is None:
+                raise ValueError("nobody else knows your arms; describe them, as polyfold_pybullet.robots does a Panda")
+            return model
+
     def __init__(self, config: Config) -> None:
-        if config.model is not None:
-            strokes = [2 * arm.open_width for arm in config.model.arms]
-        else:
-            strokes = [0.085, 0.085]
+        assert config.model is not None
+        strokes = (2 * arm.open_width for arm in config.model.arms)
         hands = [
             RobotiqHand(host, stroke, config.hand_port) for host, stroke in zip(config.hosts, strokes, strict=True)
         ]
