@@ -111,6 +111,9 @@ def _studies():
         "edge_length = 0",
         "edge_length = nan",
         "first_seed = -1",
+        "sizes = { square = true }",
+        "sizes = { skirt = 0.5 }",
+        'base = { simulator = { name = "real-cell", camera = "realsense", robot = "pybullet" } }',
         'split = "both"',
         'steps = "many"',
         'reference = "real"',
@@ -302,6 +305,12 @@ def _cassettes():
         yield Case("cassette", content, (*FOLD, "--llm", "replay:FILE"), name="file.jsonl")
 
 
+def _calibrations():
+    cell = ("--simulator", "real-cell", "--set", "simulator.camera=realsense", "--set", "simulator.robot=pybullet")
+    for content in ("{", "{}", '{"intrinsics": 1, "pose": [[1]]}', b"\xff\xfe", '{"intrinsics": [[]], "pose": null}'):
+        yield Case("calibration", content, (*FOLD, *cell, "--set", "simulator.calibration=FILE"))
+
+
 def _weights():
     for content, about in (
         (b"", "empty"),
@@ -387,7 +396,7 @@ def _options():
 def cases():
     """All of them."""
     makers = (
-        _experiments, _studies, _suites, _meshes, _outlines, _pictures, _sheets, _cassettes, _weights, _data, _runs,
+        _experiments, _studies, _suites, _meshes, _outlines, _pictures, _sheets, _cassettes, _calibrations, _weights, _data, _runs,
         _options,
     )  # fmt: skip
     return [case for maker in makers for case in maker()]
