@@ -42,6 +42,22 @@ class Eye:
         pose[2, 3] = camera.elevation
         return cls(intrinsics, pose)
 
+    def after_a_push(self, way: float, turn: float, seed: int) -> Eye:
+        """Where it is taken to be once the camera was pushed and nobody noticed.
+
+        Args:
+            way: how far it was pushed [m].
+            turn: by how much it was turned [rad].
+            seed: of the directions.
+        """
+        from scipy.spatial.transform import Rotation
+
+        rng = np.random.default_rng([seed, 11])
+        along, about = (axis / np.linalg.norm(axis) for axis in rng.normal(size=(2, 3)))
+        off = np.eye(4)
+        off[:3, :3], off[:3, 3] = Rotation.from_rotvec(turn * about).as_matrix(), way * along
+        return Eye(self.intrinsics, self.pose @ off)
+
     def places(self, pixels: ArrayLike, depth: ArrayLike) -> Floats:
         """World points [m], shape (N, 3), seen at pixels, shape (N, 2), at distances along the optical axis, (N,)."""
         pixels = np.asarray(pixels, float)

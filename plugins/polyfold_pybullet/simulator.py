@@ -20,6 +20,7 @@ from polyfold.plugins.interfaces import RecordsMotion
 from polyfold.types import Action, Observation, SimState
 from polyfold_pybullet.arms import PybulletArms
 from polyfold_pybullet.depth_noise import DepthNoise
+from polyfold_pybullet.scenery import PaintedCell, Scenery
 
 if TYPE_CHECKING:
     from polyfold_pybullet.depth_noise import NoisyDepth
@@ -91,9 +92,16 @@ class CellSimulator:
         )
         arms: PybulletArms.Config = Field(default=PybulletArms.Config(), description="which arms, and how they move")
         noise: DepthNoise = Field(default=DepthNoise(), description="errors of the depth camera")
+        scenery: Scenery = Field(default=Scenery(), description="what colours suffer from")
         frames: int = Field(default=5, ge=1, le=100, description="pictures averaged before a fold")
         views: int = Field(
             default=20, ge=0, le=200, description="views of a board by which the camera is calibrated; 0: it is exact"
+        )
+        moved_mm: float = Field(
+            default=0.0, ge=0, le=200, description="how far the camera was pushed since it was calibrated [mm]"
+        )
+        moved_deg: float = Field(
+            default=0.0, ge=0, le=20, description="by how much it was turned since then, about any axis [deg]"
         )
         bite: float = Field(
             default=0.01, ge=0, le=0.05, description="how far below the measured surface the fingers close [m]"
@@ -129,6 +137,7 @@ class CellSimulator:
         self._arms = PybulletArms(self.config.arms)
         self._eye: Eye | None = None
         self._depth: NoisyDepth | None = None
+        self._painted: PaintedCell | None = None
         self._folds: tuple[CellFold, ...] = ()
         self._told: tuple[tuple[int, ...], tuple[float, ...], tuple[float, ...]] | None = None
 
@@ -140,7 +149,9 @@ class CellSimulator:
         seen = self._cloth.reset(garment, seed)
         self._arms.connect()
         self._arms.park()
-        self._eye = calibrated_eye(seen.camera, self.config.views, seed)
+        pushed = self.config.moved_mm / 1000.0, float(np.radians(self.config.moved_deg))
+        self._eye = calibrated_eye(seen.camera, self.config.views, seed).after_a_push(*pushed, seed)
+        self._painted = PaintedCell(self.config.scenery, seen.camera.height, seen.camera.width, seed)
         self._depth = NoisyDepth(self.config.noise, seen.camera.height, seen.camera.width, seed)
         self._folds, self._told = (), None
         return self._measured(seen)
@@ -193,7 +204,8 @@ class CellSimulator:
     def _measured(self, seen: Observation) -> Observation:
         if self._depth is None:
             return seen
-        return replace(seen, depth=self._depth.measure(seen.depth))
+        assert self._painted is not None
+        return replace(self._painted.paint(seen), depth=self._depth.measure(seen.depth))
 
     def _located(self, action: Action, seen: Observation) -> tuple[Floats, Floats]:
         """Where the fingers close and where they let go in the arms' world [m], shape (arms, 3) each.

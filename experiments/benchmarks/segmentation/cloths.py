@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+from polyfold_pybullet.scenery.tables import smooth_noise
 from scipy import ndimage
-
-from experiments.benchmarks.segmentation.tables import smooth_noise
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
+from polyfold_pybullet.scenery.tables import NAMES, smooth_noise, table
 from scipy import ndimage
 
 from experiments.benchmarks.segmentation.cloths import PATTERNS, cloth
-from experiments.benchmarks.segmentation.tables import NAMES, smooth_noise, table
 from polyfold import plugins
 from polyfold.geometry import rotate
 from polyfold.geometry._masks import fill_polygon
