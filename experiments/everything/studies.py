@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import polyfold
-from experiments.everything.pictures import failures
+from experiments.everything.pictures import curves, failures
 from polyfold.analysis import Results
 from polyfold.studies import Study
 from polyfold.studies._study import with_variants
@@ -28,6 +28,7 @@ class StudyStep:
         sections: what its file of results holds.
         also: further files of results made of the same episodes.
         pictured: whether ``results/NAME-failures.png`` shows what was folded wrongly.
+        drawn: what draws ``results/NAME.png``; nothing by default.
         variants: only these; all if empty.
         garments: instead of the study's own number.
     """
@@ -37,6 +38,7 @@ class StudyStep:
     sections: Callable[[Results], Sequence[Section]]
     also: tuple[tuple[str, Callable[[Results], Sequence[Section]]], ...] = ()
     pictured: bool = False
+    drawn: Callable[[Results], bytes] | None = None
     variants: tuple[str, ...] = ()
     garments: int | None = None
 
@@ -51,7 +53,11 @@ class StudyStep:
         results = polyfold.run(self.study(), folder / self.name, workers, accept_change=accept_change)
         files = {f"{self.name}.md": self.sections, **dict(self.also)}
         found = {name: _text(sections(results)).encode() for name, sections in files.items()}
-        return found | ({f"{self.name}-failures.png": failures(results, folder / self.name)} if self.pictured else {})
+        if self.pictured:
+            found[f"{self.name}-failures.png"] = failures(results, folder / self.name)
+        if self.drawn is not None:
+            found[f"{self.name}.png"] = self.drawn(results)
+        return found
 
 
 def _text(sections: Sequence[Section]) -> str:
@@ -129,6 +135,12 @@ def _robot_cell(results: Results) -> Sequence[Section]:
     return [*_table(results), *_pairs(("cell", "cell, no recovery"), ("cell", "cloth alone"))(results)]
 
 
+def _disturbances(results: Results) -> Sequence[Section]:
+    """Each disturbance beside the cell undisturbed, seen by the same segmenter."""
+    pairs = [(name, "cell, photo" if name.endswith(", photo") else "cell") for name in results.study.variants]
+    return [*_table(results), *_pairs(*(pair for pair in pairs if pair[0] != pair[1]))(results)]
+
+
 def _policies(results: Results) -> Sequence[Section]:
     others = [name for name in results.study.variants if name != "affordance-pair"]
     return [*_table(results), *_pairs(*(("affordance-pair", other) for other in others))(results)]
@@ -144,6 +156,7 @@ STUDIES = (
     StudyStep("displaced", 0.2, _displaced),
     StudyStep("robustness", 1.0, _robustness),
     StudyStep("robot_cell", 0.5, _robot_cell),
+    StudyStep("disturbances", 0.5, _disturbances, drawn=curves),
     StudyStep("ambiguous", 0.2, _table),
     StudyStep("planners", 0.5, _planners),
     StudyStep("groundings", 0.4, _groundings),
