@@ -56,6 +56,8 @@ def _with(table: dict[str, Any], path: list[str], value: Any, owner: str) -> dic
     if not inner:
         return {**table, name: value}
     there = table.get(name, {})
+    if isinstance(there, str):  # a component by its name
+        there = {"name": there}
     if not isinstance(there, dict):
         raise ConfigError(f"{owner!r} can't be set, for {name!r} is {there!r} and no table; set it as a whole")
     return {**table, name: _with(there, inner, value, owner)}

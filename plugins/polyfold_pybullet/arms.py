@@ -119,7 +119,7 @@ class PybulletArms:
         """Do what was planned, from parked to parked. Raises RobotError if it was stopped or the arms are elsewhere."""
         from polyfold_pybullet.planning import FoldPlan
 
-        self._ready()
+        self._sync()
         if not isinstance(plan, FoldPlan):
             raise RobotError("this is no plan of these arms; give one that their plan method returned")
         self._refuse_after_a_stop()
@@ -135,6 +135,7 @@ class PybulletArms:
 
     def move_linear(self, arm: int, pose: ArrayLike, speed: float = 0.1) -> None:
         """Move a tool on a straight line to a pose, at most at ``speed`` [m/s], while the other arm rests."""
+        self._sync()
         _, planner = self._ready()
         self._refuse_after_a_stop()
         if not (np.isfinite(speed) and speed > 0):
@@ -154,13 +155,21 @@ class PybulletArms:
         """Open the hands and bring the arms to where they wait; allowed after a stop."""
         _, planner = self._ready()
         self._stopped.clear()
-        self._set_hands((False, False))
+        self._sync()
+        self._open_hands()
         moved = planner.moves.parking(np.hstack(self._joints))
         self._do(moved, "move the arms apart with move_linear first")
 
     def stop(self) -> None:
         """Stop all arms where they are, from any thread; until parked they do nothing else."""
         self._stopped.set()
+
+    def _sync(self) -> None:
+        """Make sure of where the arms are before they move."""
+        self._ready()
+
+    def _open_hands(self) -> None:
+        self._set_hands((False, False))
 
     def _set_hands(self, closed: Sequence[bool]) -> None:
         self._closed = list(closed)

@@ -78,7 +78,9 @@ class Calibrate:
             )
         found = Calibration.of(pictures, tools, arguments.board, intrinsics)
         out.parent.mkdir(parents=True, exist_ok=True)
-        out.write_text(json.dumps(_told(found, names, arguments.board), indent=1) + "\n", encoding="utf-8")
+        height, width = pictures[0].shape[:2]
+        told = {"size": [width, height], **_told(found, names, arguments.board)}
+        out.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
         picture = out.with_suffix(".png")
         _draw(found, names, pictures, picture)
         used = len(found.corners) - sum(number in found.corners for number in found.skipped)
@@ -110,7 +112,7 @@ def read_views(folder: Path) -> tuple[list[str], list[Picture], Floats]:
     pictures = [_picture(folder / name) for name in names]
     if len({picture.shape for picture in pictures}) > 1:
         raise ConfigError(f"the pictures in {folder} differ in size; give those of one camera at one resolution")
-    return names, pictures, np.array([_pose(poses[name], f"{path}, {name}") for name in names])
+    return names, pictures, np.array([camera_pose(poses[name], f"{path}, {name}") for name in names])
 
 
 def _picture(path: Path) -> Picture:
@@ -125,7 +127,8 @@ def _picture(path: Path) -> Picture:
     return cv2.cvtColor(read, cv2.COLOR_BGR2RGB).astype(np.uint8)
 
 
-def _pose(given: Any, where: str) -> Floats:
+def camera_pose(given: Any, where: str) -> Floats:
+    """A pose, shape (4, 4), as a file has it. Raises ConfigError, which begins with ``where``, if it is none."""
     try:
         pose = np.array(given, float)
     except (TypeError, ValueError):

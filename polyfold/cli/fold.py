@@ -104,6 +104,7 @@ def _print_result(episode: polyfold.Episode, out: Path | None) -> None:
     if episode.fidelity is not None:
         print(f"  result: {episode.fidelity.in_words(episode.task)}{_how_to_name(episode.fidelity)}")
     if out is not None:
-        print(f"  pictures: {out / 'filmstrip.png'}, {out / 'fold.gif'}")
+        moving = f", {out / 'fold.gif'}" if (out / "fold.gif").exists() else ""
+        print(f"  pictures: {out / 'filmstrip.png'}{moving}")
     else:
         print("  pictures: none; --out DIR leaves some")

@@ -43,7 +43,7 @@ class Irc5:
         self.joints = {f"ROB_{arm + 1}": list(row) for arm, row in enumerate(joints)}
         self.files, self.signals, self.ran, self.log = {}, {}, [], []
         self.motors, self.running, self.seconds, self.fails, self.stopped = "motoron", False, 0.0, "", 0
-        self.blocked = {}
+        self.blocked, self.silent, self.started, self.on_upload = {}, set(), 0, None
         self.entry(1, 0, "start")
         self._lock = threading.Lock()
 
@@ -56,7 +56,7 @@ class Irc5:
         })  # fmt: skip
 
     def start(self):
-        self.running = True
+        self.running, self.started = True, self.started + 1
         threading.Thread(target=self._run, daemon=True).start()
 
     def _run(self):
@@ -85,6 +85,8 @@ class Irc5:
             name = path.removeprefix("fileservice/")
             if method == "PUT":
                 self.files[name] = body
+                if self.on_upload is not None:
+                    self.on_upload()
                 return {}
             return self.files.pop(name, b"") if method == "DELETE" else self.files[name]
         if path == "ctrl/$RAMDISK":
@@ -154,6 +156,10 @@ def serve(irc5):
 
         def do_any(self):
             body = self.rfile.read(int(self.headers.get("Content-Length", 0) or 0))
+            if self.command in irc5.silent:
+                time.sleep(1.0)
+                self.close_connection = True
+                return
             found = irc5.answer(self.command, self.path, body)
             content = found if isinstance(found, bytes) else json.dumps(found).encode()
             self.send_response(200)

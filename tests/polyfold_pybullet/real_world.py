@@ -11,7 +11,7 @@ from polyfold.errors import RobotError
 from polyfold.plugins.hardware import RgbdFrame
 from polyfold.types import Action
 
-CENTRE, TURN, TABLE = (0.03, 0.02), np.radians(8.0), 0.0
+CENTRE, TURN = (0.03, 0.02), np.radians(8.0)
 """Where the cloth's own world lies in the robot's."""
 INTRINSICS = np.array([[610.0, 0.0, 319.5], [0.0, 610.0, 239.5], [0.0, 0.0, 1.0]])
 
@@ -35,17 +35,17 @@ class World:
         self.cloth.reset(self.garment, seed)
         self.pose = tilted() if pose is None else pose
         self.moves = []
-        self.stops = 0
+        self.stops = self.parked = 0
         self.dies_after = None
         self.looked = 0
 
     def to_robot(self, points):
         turn = np.array([[np.cos(TURN), -np.sin(TURN)], [np.sin(TURN), np.cos(TURN)]])
-        return np.concatenate([points[..., :2] @ turn.T + CENTRE, points[..., 2:] + TABLE], axis=-1)
+        return np.concatenate([points[..., :2] @ turn.T + CENTRE, points[..., 2:]], axis=-1)
 
     def to_cloth(self, points):
         turn = np.array([[np.cos(TURN), -np.sin(TURN)], [np.sin(TURN), np.cos(TURN)]])
-        return np.concatenate([(points[..., :2] - CENTRE) @ turn, points[..., 2:] - TABLE], axis=-1)
+        return np.concatenate([(points[..., :2] - CENTRE) @ turn, points[..., 2:]], axis=-1)
 
     def frame(self):
         """What the tilted camera measures: rays are followed down to where they meet the heights of the cloth."""
@@ -93,6 +93,10 @@ def components(world):
             for arms in [[0], [1]] if plan.mode == "in sequence" else [list(range(len(picks)))]:
                 heights = np.maximum(picks[arms, 2], 0.0)
                 world.cloth.execute(Action(camera.to_pixels(picks[arms]), camera.to_pixels(places[arms]), heights))
+
+        def park(self):
+            world.parked += 1
+            super().park()
 
         def stop(self):
             world.stops += 1

@@ -37,13 +37,16 @@ def test_connecting_moves_nothing_and_reads_where_the_arms_are(arms, irc5):
     assert np.degrees(arms.joint_state(0)) == pytest.approx(np.insert(axes, 2, seventh))
     assert not irc5.ran
     assert not irc5.signals
+    assert not irc5.stopped
     assert arms.tcp_pose(0)[2, 3] > 0.1
 
 
 def test_a_fold_runs_as_programs_of_both_arms_in_step(arms, irc5):
     arms.connect()
+    arms.park()
     plan = arms.plan(PICKS, PLACES)
     assert isinstance(plan, FoldPlan)
+    irc5.ran.clear()
     told = []
     arms.execute(plan, told.append)
     assert len(irc5.ran) == len(plan.motions)
@@ -60,6 +63,7 @@ def test_a_fold_runs_as_programs_of_both_arms_in_step(arms, irc5):
 
 def test_speeds_bring_a_move_to_its_planned_time(arms, irc5):
     arms.connect()
+    arms.park()
     plan = arms.plan(PICKS, PLACES)
     motion = max(plan.motions, key=lambda motion: motion.duration)
     left, _ = arms._link.programs(motion)
@@ -76,7 +80,7 @@ def test_speeds_bring_a_move_to_its_planned_time(arms, irc5):
 
 @pytest.mark.parametrize(
     ("trouble", "says"),
-    [("motoroff", r"motors .* are off"), ("running", "a program runs"), ("away", "said: .*look at its event log")],
+    [("motoroff", r"motors .* are off"), ("running", "a program runs"), ("away", "said: .*check the address")],
 )
 def test_a_controller_that_is_not_ready_is_told_so(irc5, trouble, says):
     with serve(irc5) as url:
@@ -88,10 +92,12 @@ def test_a_controller_that_is_not_ready_is_told_so(irc5, trouble, says):
         made = plugins.create("robots", "abb", {"url": there, "robot": "panda"})
         with pytest.raises(RobotError, match=says):
             made.connect()
+        assert not irc5.stopped, "what others run is left alone"
 
 
 def test_a_program_that_fails_stops_everything_and_says_what_the_controller_says(arms, irc5):
     arms.connect()
+    arms.park()
     plan = arms.plan(PICKS, PLACES)
     irc5.fails = "joint out of range"
     with pytest.raises(RobotError, match="joint out of range"):
@@ -102,6 +108,7 @@ def test_a_program_that_fails_stops_everything_and_says_what_the_controller_says
 
 def test_a_stop_from_another_thread_ends_the_program_and_park_goes_on(arms, irc5):
     arms.connect()
+    arms.park()
     plan = arms.plan(PICKS, PLACES)
     irc5.seconds = 5.0
     threading.Timer(0.3, arms.stop).start()
@@ -116,6 +123,7 @@ def test_a_stop_from_another_thread_ends_the_program_and_park_goes_on(arms, irc5
 
 def test_an_arm_that_does_not_arrive_is_noticed(arms, irc5):
     arms.connect()
+    arms.park()
     plan = arms.plan(PICKS, PLACES)
     irc5.blocked = {1}
     with pytest.raises(RobotError, match="rad from where its motion ends"):
@@ -124,11 +132,58 @@ def test_an_arm_that_does_not_arrive_is_noticed(arms, irc5):
 
 def test_arms_that_are_elsewhere_do_not_begin(arms, irc5):
     arms.connect()
+    arms.park()
     plan = arms.plan(PICKS, PLACES)
     irc5.joints["ROB_2"][1] += 5.0
+    ran = len(irc5.ran)
     with pytest.raises(RobotError, match="call park first"):
         arms.execute(plan)
-    assert not irc5.ran
+    assert len(irc5.ran) == ran
+
+
+@pytest.mark.parametrize("trouble", ["watcher", "deaf"])
+def test_whatever_goes_wrong_the_program_is_stopped(arms, irc5, trouble):
+    arms.connect()
+    arms.park()
+    plan = arms.plan(PICKS, PLACES)
+    irc5.seconds = 5.0
+
+    def watch(time):
+        if trouble == "watcher":
+            raise KeyError("watch")
+        irc5.silent = {"GET"}
+
+    with pytest.raises(KeyError if trouble == "watcher" else RobotError):
+        arms.execute(plan, watch)
+    irc5.silent = set()
+    assert irc5.stopped or not irc5.started
+    assert not irc5.running
+
+
+def test_a_stop_during_the_upload_keeps_the_program_from_starting(arms, irc5):
+    arms.connect()
+    arms.park()
+    plan = arms.plan(PICKS, PLACES)
+    started = irc5.started
+    irc5.on_upload = arms.stop
+    with pytest.raises(RobotError, match="were stopped"):
+        arms.execute(plan)
+    assert irc5.started == started
+
+
+def test_a_controller_that_falls_silent_is_given_up_and_said_to_move_on(arms, irc5, monkeypatch):
+    monkeypatch.setattr("polyfold_pybullet.drivers.abb.ANSWERS", 0.2)
+    arms.connect()
+    arms.park()
+    plan = arms.plan(PICKS, PLACES)
+    irc5.seconds = 5.0
+
+    def watch(time):
+        irc5.silent = {"GET", "POST"} if irc5.running else set()
+
+    with pytest.raises(RobotError, match="may still move; press the emergency stop"):
+        arms.execute(plan, watch)
+    irc5.silent = set()
 
 
 def test_a_hand_is_as_wide_as_its_signal_says(irc5):
@@ -140,6 +195,19 @@ def test_a_hand_is_as_wide_as_its_signal_says(irc5):
         assert made.gripper(1, True) == pytest.approx(0.0315)
         assert irc5.signals["polyfold_close_2"] == "1"
         made.close()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        ({"url": "192.168.125.1"}, "begins with http"),
+        ({"units": ["ROB_1", "ROB_1"]}, "each has its own"),
+        ({"close_signals": ["close", "close"]}, "each has its own"),
+    ],
+)
+def test_settings_that_fit_no_cell_are_refused(wrong, says):
+    with pytest.raises(ConfigError, match=says):
+        plugins.create("robots", "abb", {"url": "http://x", **wrong})
 
 
 def test_names_of_tasks_that_would_share_a_file_are_refused():

@@ -80,6 +80,23 @@ def test_stop_leaves_the_arms_where_they_are_until_they_are_parked(robot):
     robot.execute(robot.plan(PICKS, PLACES))
 
 
+def test_arms_that_were_stopped_while_their_tips_press_on_the_table_can_be_parked(robot):
+    parked = [robot.joint_state(arm) for arm in (0, 1)]
+    on_the_table = np.array(PICKS) * [1, 1, 0]
+    plan = robot.plan(on_the_table, PLACES)
+    assert isinstance(plan, RobotPlan)
+
+    def stop(time):
+        if robot.tcp_pose(0)[2, 3] < 0.001:
+            robot.stop()
+
+    with pytest.raises(RobotError, match="were stopped"):
+        robot.execute(plan, watch=stop)
+    assert robot.tcp_pose(0)[2, 3] < 0.001
+    robot.park()
+    np.testing.assert_allclose([robot.joint_state(arm) for arm in (0, 1)], parked, atol=1e-6)
+
+
 def test_a_plan_from_elsewhere_is_not_begun(robot):
     plan = robot.plan(PICKS, PLACES)
     up = robot.tcp_pose(0)

@@ -3,6 +3,8 @@
 import io
 import json
 import logging
+import os
+import signal
 
 import numpy as np
 import pytest
@@ -42,8 +44,15 @@ def folded(world, said="fold it in half from bottom to top", **params):
     return polyfold.fold(said, world.garment, experiment=experiment)
 
 
-def says(monkeypatch, *lines):
-    monkeypatch.setattr("sys.stdin", io.StringIO("".join(f"{line}\n" for line in lines)))
+class Terminal(io.StringIO):
+    """Somebody who types, at a terminal."""
+
+    def isatty(self):
+        return True
+
+
+def says(monkeypatch, *lines, stdin=Terminal):
+    monkeypatch.setattr("sys.stdin", stdin("".join(f"{line}\n" for line in lines)))
 
 
 def test_a_sentence_folds_cloth_that_only_a_camera_sees(world):
@@ -76,39 +85,103 @@ def test_a_tilted_camera_becomes_one_that_looks_straight_down(world):
     simulator.close()
 
 
-@pytest.mark.parametrize("turn", [0.0, 2.0])
-def test_points_go_to_the_robots_world_and_back(turn):
-    view = Overhead(Camera.framing(0.6), (0.4, -0.1), turn, 0.05)
-    pixels, heights = np.array([[199.5, 199.5], [300.0, 120.0]]), np.array([0.0, 0.02])
-    found = view.places(pixels, heights)
-    assert np.allclose(found[0], [0.4, -0.1, 0.05])
-    assert found[1, 2] == pytest.approx(0.07)
-    assert np.hypot(*(found[1] - found[0])[:2]) == pytest.approx(np.hypot(*view.camera.to_world(pixels[1], 0.02)[:2]))
+@pytest.mark.parametrize("turn", [0.0, 0.7, -2.0])
+def test_pixels_go_to_the_robots_world_where_a_camera_sees_them(turn):
+    """By a ray of its own: what lies at the place that a pixel stands for is seen at the pixel of the tilted camera."""
+    view = Overhead(Camera.framing(0.4), (0.03, 0.02), turn)
+    places = view.places([[199.5, 199.5], [300.0, 120.0]], [0.0, 0.02])
+    assert np.allclose(places[0], [0.03, 0.02, 0.0])
+    across, up, _ = view.camera.to_world([300.0, 120.0], 0.02)
+    x, y = across * np.cos(turn) - up * np.sin(turn), across * np.sin(turn) + up * np.cos(turn)
+    assert np.allclose(places[1], [0.03 + x, 0.02 + y, 0.02])
 
 
-def test_nothing_moves_before_a_person_agrees(world, monkeypatch, capsys):
-    says(monkeypatch)
-    with pytest.raises(RobotError, match="nobody is there to agree"):
+@pytest.mark.parametrize("height", [0.0, 0.04])
+def test_what_stands_high_is_found_where_it_is(height):
+    """A square block under a tilted camera: each ray is followed down until it meets the block's top or side."""
+    pose, half = tilted(20.0), 0.06
+    rows, columns = np.indices((480, 640))
+    rays = np.stack([columns, rows, np.ones_like(rows)], axis=-1) @ np.linalg.inv(INTRINSICS).T @ pose[:3, :3].T
+
+    measured, met = -pose[2, 3] / rays[..., 2], np.zeros((480, 640), bool)
+    for level in np.linspace(height, 0.0, 81):
+        depth = (level - pose[2, 3]) / rays[..., 2]
+        points = pose[:3, 3] + rays * depth[..., None]
+        meets = (np.abs(points[..., :2] - CENTRE) <= half).all(axis=-1) & ~met
+        measured[meets], met = depth[meets], met | meets
+    rgb = np.where(met[..., None], np.uint8(20), np.uint8(220)).repeat(3, axis=-1)
+    view = Overhead(Camera.framing(0.4), CENTRE, 0.0)
+    seen = view.observe(RgbdFrame(rgb, measured.astype(np.float32), INTRINSICS, pose))
+    block = seen.rgb[..., 0] < 100
+    scale = view.camera.focal / (view.camera.elevation - height)
+    found = np.argwhere(block)
+    assert np.ptp(found, axis=0) == pytest.approx([2 * half * scale] * 2, abs=4.0)
+    assert found.mean(axis=0) == pytest.approx([199.5, 199.5], abs=2.0)
+    heights = view.camera.elevation - seen.depth
+    assert np.nanmedian(heights[block]) == pytest.approx(height, abs=1e-4)
+
+
+@pytest.mark.parametrize("stdin", [io.StringIO, Terminal])
+def test_nothing_moves_before_a_person_agrees(world, monkeypatch, capsys, stdin):
+    says(monkeypatch, *(["y", "y"] if stdin is io.StringIO else ["", "y"]), stdin=stdin)
+    with pytest.raises(RobotError, match="nobody is at a terminal" if stdin is io.StringIO else "not agreed to"):
         folded(world, confirm="each")
-    assert "Lay the rectangle flat" in capsys.readouterr().err
-    says(monkeypatch, "", "q")
-    with pytest.raises(RobotError, match="stopped by hand"):
-        folded(world, confirm="each")
+    assert ("Lay the rectangle flat" in capsys.readouterr().err) == (stdin is Terminal)
     assert not world.moves
+    assert not world.parked
 
 
-def test_a_fold_that_is_skipped_leaves_the_cloth(world, monkeypatch, caplog):
-    says(monkeypatch, "", "s", "s", "s", "s", "s")
+def test_no_terminal_at_all_is_no_consent(world, monkeypatch):
+    monkeypatch.setattr("sys.stdin", None)
+    with pytest.raises(RobotError, match="nobody is at a terminal"):
+        folded(world, confirm="start")
+
+
+def test_each_fold_is_shown_and_asked_for(world, monkeypatch, capsys, tmp_path):
+    says(monkeypatch, "y", "hm", "y")
+    folded(world, confirm="each", picture=str(tmp_path / "next.png"))
+    assert world.moves == ["at once"]
+    assert (tmp_path / "next.png").stat().st_size > 1000
+    assert "y or q" in capsys.readouterr().err
+    says(monkeypatch, "y", "q")
+    with pytest.raises(RobotError, match="not agreed to"):
+        folded(world, confirm="each")
+    assert len(world.moves) == 1
+
+
+def test_cloth_that_was_moved_while_the_person_thought_is_not_folded_by_an_old_plan(world, monkeypatch, caplog):
+    class Mover(Terminal):
+        def readline(self, *_):
+            if world.looked == 2:
+                world.cloth.execute(Action(np.array([[200.0, 200.0]]), np.array([[240.0, 150.0]])))
+            return super().readline()
+
+    says(monkeypatch, *["y"] * 9, stdin=Mover)
     with caplog.at_level(logging.WARNING):
         folded(world, confirm="each")
-    assert "it was skipped by hand" in caplog.text
+    assert "the picture changed while you were asked" in caplog.text
+
+
+def test_a_dry_run_says_what_would_be_done_and_moves_nothing(world):
+    with pytest.raises(RobotError, match="dry run, nothing moved: it would fold at once in"):
+        folded(world, dry_run=True, confirm="each")
     assert not world.moves
+    assert not world.parked
 
 
-def test_a_dry_run_says_what_would_be_done_and_moves_nothing(world, caplog):
-    with caplog.at_level(logging.WARNING):
-        folded(world, dry_run=True)
-    assert "dry run; it would be done" in caplog.text
+def test_a_table_that_is_not_where_the_robot_thinks_is_refused(world):
+    world.pose[2, 3] += 0.03
+    told = world.pose.copy()
+    told[2, 3] -= 0.03
+    true = world.frame
+
+    def off():
+        frame = true()
+        return RgbdFrame(frame.rgb, frame.depth, frame.intrinsics, told)
+
+    world.frame = off
+    with pytest.raises(RobotError, match=r"the table is measured -?\d+ mm from where"):
+        folded(world)
     assert not world.moves
 
 
@@ -137,7 +210,7 @@ def test_an_error_while_moving_stops_the_arms(world, monkeypatch):
 
 def test_a_camera_that_looks_elsewhere_is_told_so(world):
     world.pose = tilted(seen=(0.5, 0.4))
-    with pytest.raises(RobotError, match=r"the camera sees \d+% of the view; move the view"):
+    with pytest.raises(RobotError, match=r"the camera sees [\d.]+ % of the view; move the view"):
         folded(world)
     assert not world.moves
 
@@ -172,13 +245,38 @@ def test_real_cloth_can_not_be_put_back_or_studied(world):
 
 def test_the_file_of_a_calibration_is_used_and_a_wrong_one_named(world, tmp_path):
     file = tmp_path / "camera.json"
-    file.write_text(json.dumps({"intrinsics": INTRINSICS.tolist(), "pose": world.pose.tolist()}))
+    told = {"intrinsics": INTRINSICS.tolist(), "pose": world.pose.tolist(), "size": [640, 480]}
+    file.write_text(json.dumps(told))
     simulator = cell(calibration=str(file))
     assert simulator.reset(world.garment, 0).rgb.shape == (400, 400, 3)
     simulator.close()
-    for content in ("{", "{}", '{"intrinsics": 1, "pose": 2}'):
+    file.write_text(json.dumps({**told, "size": [1280, 960]}))
+    with pytest.raises(RobotError, match="pictures are 640 x 480, those that it was calibrated with 1280 x 960"):
+        cell(calibration=str(file)).reset(world.garment, 0)
+    upside_down = {**told, "pose": (world.pose @ np.diag([1.0, -1.0, 1.0, 1.0])).tolist()}
+    larger = {**told, "pose": (world.pose @ np.diag([1.2, 1.2, 1.2, 1.0])).tolist()}
+    no_lens = {**told, "intrinsics": np.zeros((3, 3)).tolist()}
+    for content in ("{", "{}", '{"intrinsics": 1, "pose": 2}', *map(json.dumps, (upside_down, larger, no_lens))):
         file.write_text(content)
-        with pytest.raises(ConfigError, match="is no calibration"):
+        with pytest.raises(ConfigError, match=r"is no calibration|a pose is four rows|no rotation"):
             cell(calibration=str(file))
     with pytest.raises(ConfigError, match="can't be read"):
         cell(calibration=str(tmp_path / "missing.json"))
+
+
+def test_a_camera_that_looks_from_the_side_is_refused(world):
+    world.pose = tilted(40.0)
+    with pytest.raises(RobotError, match="looks 40 degrees off straight down"):
+        folded(world)
+
+
+def test_a_closed_terminal_stops_the_arms(world, monkeypatch):
+    simulator = cell()
+    simulator.reset(world.garment, 0)
+    pixels = simulator.observe().camera.to_pixels(np.array([[0.0, -0.1], [0.0, 0.05]]))
+    monkeypatch.setattr(simulator._robot, "execute", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
+    with pytest.raises(SystemExit):
+        simulator.execute(Action(pixels[:1], pixels[1:]))
+    assert world.stops == 1
+    assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+    simulator.close()

@@ -30,6 +30,8 @@ POINTS = 0.15
 """Time between two points of a program [s]: the controller rounds the corners between them."""
 LATER = 10.0
 """How much longer than planned a program may take [s]."""
+ANSWERS, STOP_TRIES = 3.0, 3
+"""How long the controller may take to answer [s], and how often it is told to stop."""
 LOOK = 0.05
 """Time between two looks whether it runs [s]."""
 FASTEST = 7000.0
@@ -58,6 +60,7 @@ class AbbArms(DrivenArms):
         signal_place: tuple[str, str] = Field(
             default=("Local", "DRV_1"), description="network and unit of these signals"
         )
+        hand_s: float = Field(default=0.5, ge=0, le=10, description="how long a hand takes to close or open [s]")
         width_signals: tuple[str, str] | None = Field(
             default=None, description="analog signals with how wide the hands are [mm], where there are any"
         )
@@ -65,10 +68,27 @@ class AbbArms(DrivenArms):
         @field_validator("tasks")
         @classmethod
         def _are_numbered(cls, tasks: tuple[str, str]) -> tuple[str, str]:
-            # abb_motion_program_exec 0.7.4 names a task's file by its number.
+            # abb_motion_program_exec 0.7.4 names a task's file by its number, and its RAPID modules read them so.
             if not all(task[-1:].isdigit() for task in tasks) or tasks[0][-1] == tasks[1][-1]:
-                raise ValueError("names of tasks end in a number of their own, such as T_ROB1 and T_ROB2")
+                raise ValueError(
+                    "names of tasks end in a number of their own; a YuMi's T_ROB_L and T_ROB_R are to be called T_ROB1 "
+                    "and T_ROB2 in its configuration, for the modules of abb_motion_program_exec"
+                )
             return tasks
+
+        @field_validator("units", "close_signals", "width_signals")
+        @classmethod
+        def _are_two(cls, names: tuple[str, str] | None) -> tuple[str, str] | None:
+            if names is not None and names[0] == names[1]:
+                raise ValueError("both arms have one name; each has its own")
+            return names
+
+        @field_validator("url")
+        @classmethod
+        def _is_an_address(cls, url: str) -> str:
+            if not url.startswith(("http://", "https://")):
+                raise ValueError("an address begins with http://, for example http://192.168.125.1:80")
+            return url
 
     def __init__(self, config: Config) -> None:
         super().__init__(config, AbbLink(config, self._tools))
@@ -88,27 +108,39 @@ class AbbLink:
     def __init__(self, config: AbbArms.Config, tools: Callable[[Motion, Floats], list[Floats]]) -> None:
         self._config, self._tools = config, tools
         self._client: Any = None
+        self._stopper: Any = None
+        self._begun = False
+        self._each: Callable[[float], None] = lambda _: None
 
     def connect(self) -> None:
-        """Reach the controller, whose motors must be on and whose program must rest."""
+        """Reach the controller, whose motors must be on and whose program must rest; nothing if it is reached."""
+        if self._client is not None:
+            return
         import abb_motion_program_exec.abb_motion_program_exec_client as abb
 
-        config = self._config
-        password = os.environ.get(config.password_env, "robotics")
-        self._client = abb.MotionProgramExecClient(config.url, config.user, password)
+        self._stopper = self._services()
+        self._client = abb.MotionProgramExecClient(abb_client=self._services())
         with self._answering():
             motors = self._client.abb_client.get_controller_state()
             running = self._client.is_motion_program_running()
         if motors != "motoron":
-            raise RobotError(f"the motors at {config.url} are off ({motors}); switch them on, in automatic mode")
+            raise RobotError(f"the motors at {self._config.url} are off ({motors}); switch them on, in automatic mode")
         if running:
-            raise RobotError(f"a program runs at {config.url}; stop it first")
+            raise RobotError(f"a program runs at {self._config.url}; stop it first")
 
     def close(self) -> None:
         """Leave the controller."""
-        client, self._client = self._client, None
-        if client is not None:
-            client.abb_client.close()
+        leaving, self._client, self._stopper = (self._client, self._stopper), None, None
+        for each in leaving:
+            if each is not None:
+                getattr(each, "abb_client", each).close()
+
+    def recover(self) -> None:
+        """Look whether the motors are on: after an emergency stop they are not."""
+        with self._answering():
+            motors = self._client.abb_client.get_controller_state()
+        if motors != "motoron":
+            raise RobotError(f"the motors at {self._config.url} are off ({motors}); switch them on, then call park")
 
     def joints(self, arm: int) -> Floats:
         """Joint angles, as measured [rad], shape (N,), from the base on."""
@@ -121,10 +153,9 @@ class AbbLink:
 
     def follow(self, motion: Motion, interval: float, each: Callable[[float], None]) -> None:
         """Have both arms run it as one program, and look whether it runs until it has ended."""
+        programs, tasks, self._each = self.programs(motion), list(self._config.tasks), each
         with self._answering():
-            began = self._client.execute_multimove_motion_program(
-                self.programs(motion), list(self._config.tasks), wait=False
-            )
+            began = self._client.execute_multimove_motion_program(programs, tasks, wait=False)
         start = time.monotonic()
         while self._runs():
             spent = time.monotonic() - start
@@ -134,6 +165,7 @@ class AbbLink:
                     f"a motion of {motion.duration:.0f} s has not ended after {spent:.0f} s; look at the pendant"
                 )
             time.sleep(LOOK)
+        self._begun = False
         each(motion.duration)
         with self._answering():
             self._client.read_motion_program_result_log(began)
@@ -161,16 +193,51 @@ class AbbLink:
         config = self._config
         with self._answering():
             self._client.abb_client.set_digital_io(config.close_signals[arm], closed, *config.signal_place)
-            time.sleep(0.3)
+            time.sleep(config.hand_s)
             if config.width_signals is None:
                 return float("nan")
             return self._client.abb_client.get_analog_io(config.width_signals[arm], *config.signal_place) / 1000.0
 
     def stop(self) -> None:
-        """Stop the program, and with it both arms."""
-        if self._client is not None and self._runs():
-            with self._answering():
-                self._client.stop_motion_program()
+        """Stop the program that was begun, and with it both arms: asked again and again until the controller hears."""
+        if not self._begun or self._stopper is None:
+            return
+        said = ""
+        for _ in range(STOP_TRIES):
+            try:
+                self._stopper.stop()
+            except Exception as error:  # the library raises bare ones
+                said = str(error)
+            else:
+                self._begun = False
+                return
+        raise RobotError(
+            f"the controller at {self._config.url} can't be told to stop ({said}) and its arms may still move; "
+            "press the emergency stop"
+        )
+
+    def _services(self) -> Any:
+        """Robot Web Services that answer in time, and begin a program only if nobody has stopped meanwhile."""
+        from abb_robot_client.rws import RWS
+        from requests.adapters import HTTPAdapter
+
+        link, config = self, self._config
+
+        class Patient(HTTPAdapter):
+            def send(self, request: Any, **settings: Any) -> Any:  # type: ignore[override]
+                # abb_robot_client 0.4.0 waits for ever.
+                return super().send(request, **{**settings, "timeout": settings.get("timeout") or ANSWERS})
+
+        class Services(RWS):
+            def start(self, cycle: str | None = "asis", tasks: list[str] | None = None) -> Any:
+                link._each(0.0)
+                link._begun = True
+                return super().start(cycle, tasks)
+
+        found = Services(config.url, config.user, os.environ.get(config.password_env, "robotics"))
+        for scheme in ("http://", "https://"):
+            found._session.mount(scheme, Patient())
+        return found
 
     def _runs(self) -> bool:
         with self._answering():
@@ -185,7 +252,10 @@ class AbbLink:
             raise
         except Exception as error:  # the client raises bare ones
             said = " ".join(str(error).split())[:300]
-            raise RobotError(f"the controller at {self._config.url} said: {said}; look at its event log") from error
+            raise RobotError(
+                f"the controller at {self._config.url} said: {said}; check the address and the user, and look at the "
+                "controller's event log"
+            ) from error
 
 
 def _target(abb: Any, joints: Floats) -> Any:

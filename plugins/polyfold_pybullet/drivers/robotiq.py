@@ -40,7 +40,6 @@ class RobotiqHand:
         if self._get("STA") != 3:
             self.close()
             raise RobotError(f"{self._where} is not activated; activate it at the pendant, which moves its fingers")
-        self._tell(GTO=1, SPE=128, FOR=60)
 
     def close(self) -> None:
         """Close the connection."""
@@ -51,13 +50,17 @@ class RobotiqHand:
     def grip(self, closed: bool) -> float:
         """Close or open it, wait until the fingers rest, and say how wide it is then [m]."""
         wanted = SHUT if closed else 0
-        self._tell(POS=wanted)
+        # Where to is said before that it shall go: another place may have been left over.
+        self._tell(POS=wanted, SPE=128, FOR=60)
+        self._tell(GTO=1)
         until = time.monotonic() + self._patience
         # The hand takes over what it was asked for a moment later; until then it says that it has arrived.
         while self._get("PRE") != wanted or self._get("OBJ") == MOVING:
             if time.monotonic() > until:
                 raise RobotError(f"{self._where} does not come to rest; look at its fingers")
             time.sleep(0.02)
+        if fault := self._get("FLT"):
+            raise RobotError(f"{self._where} reports the fault {fault}; look it up in its manual, and activate it anew")
         return self._stroke * (1.0 - self._get("POS") / SHUT)
 
     def _tell(self, **values: int) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,16 @@ LOOKAHEAD, GAIN = 0.1, 300
 """How ``servoJ`` smooths what it is sent [s], and how stiffly it follows; the library's own examples use these."""
 SLOWS = 2.0
 """Deceleration of the tool at the end and on a stop [m/s²]."""
+LATE = 3
+"""So many intervals late, and time is stretched: set points that are sent in a burst would be a jerk."""
+LAGS = 0.25
+"""An arm that is farther behind its set point than this does not follow [rad]."""
+MAY_MOVE = (1, 2)
+"""Safety modes in which it may: normal and reduced."""
+STOPS = {3: "is stopped to protect itself", 4: "is in recovery mode", 5: "is stopped by a safeguard"} | dict.fromkeys(
+    (6, 7), "has its emergency stop pressed"
+)
+"""What other modes mean; more are faults."""
 
 
 class UrArms(DrivenArms):
@@ -38,6 +48,13 @@ class UrArms(DrivenArms):
         model: RobotModel | None = Field(description="both arms: their URDF, base, joints, tool, postures and limits")
         interval: float = Field(default=0.008, ge=0.002, le=0.1, description="time between two set points [s]")
         hand_port: int = Field(default=PORT, ge=1, le=65535, description="port of the Robotiq hands' URCap")
+
+        @field_validator("hosts")
+        @classmethod
+        def _are_two(cls, hosts: tuple[str, str]) -> tuple[str, str]:
+            if hosts[0] == hosts[1]:
+                raise ValueError("both arms have one address; each controller has its own")
+            return hosts
 
         @field_validator("model")
         @classmethod
@@ -64,7 +81,9 @@ class UrLink:
         self._receive: list[Any] = []
 
     def connect(self) -> None:
-        """Open both controllers and hands."""
+        """Open both controllers and hands; nothing if they are open."""
+        if self._control:
+            return
         import rtde_control  # pyright: ignore[reportMissingImports]
         import rtde_receive  # pyright: ignore[reportMissingImports]
 
@@ -80,14 +99,21 @@ class UrLink:
             hand.connect()
 
     def close(self) -> None:
-        """Release the controllers."""
+        """Release the controllers and hands, as far as they can be reached."""
         for hand in self._hands:
             hand.close()
-        for control in self._control:
-            control.stopScript()
-        for interface in (*self._control, *self._receive):
-            interface.disconnect()
+        leaving = [control.stopScript for control in self._control]
+        leaving += [interface.disconnect for interface in (*self._control, *self._receive)]
         self._control, self._receive = [], []
+        for leave in leaving:
+            with suppress(RuntimeError):  # a connection that is lost is left already
+                leave()
+
+    def recover(self) -> None:
+        """Have both controllers listen again, as they don't after a stop of their own."""
+        for host, control in zip(self._hosts, self._control, strict=True):
+            if not control.isProgramRunning() and not control.reuploadScript():
+                raise RobotError(f"the controller at {host} does not listen; unlock it at the pendant, then call park")
 
     def joints(self, arm: int) -> Floats:
         """Joint angles, as measured [rad], shape (6,)."""
@@ -95,15 +121,17 @@ class UrLink:
 
     def follow(self, motion: Motion, interval: float, each: Callable[[float], None]) -> None:
         """Send both arms their set points, one after the other in every interval."""
-        began = time.monotonic()
+        due = time.monotonic()
         with self._serving():
             for count in range(int(np.ceil(motion.duration / interval)) + 1):
                 at = min(count * interval, motion.duration)
                 each(at)
                 for arm, joints in enumerate(motion.at(np.array([at]))):
-                    self._refuse_if_stopped(arm)
-                    self._control[arm].servoJ(joints[0].tolist(), 0.0, 0.0, interval, LOOKAHEAD, GAIN)
-                time.sleep(max(0.0, began + (count + 1) * interval - time.monotonic()))
+                    self._refuse_if_stopped(arm, joints[0])
+                    if not self._control[arm].servoJ(joints[0].tolist(), 0.0, 0.0, interval, LOOKAHEAD, GAIN):
+                        raise RobotError(f"{self._hosts[arm]} takes no more set points; both arms were stopped")
+                due = max(due + interval, time.monotonic() - LATE * interval)
+                time.sleep(max(0.0, due - time.monotonic()))
             time.sleep(2 * LOOKAHEAD)  # what was sent last is reached so much later
 
     def grip(self, arm: int, closed: bool) -> float:
@@ -111,9 +139,17 @@ class UrLink:
         return self._hands[arm].grip(closed)
 
     def stop(self) -> None:
-        """Stop both arms where they are."""
-        for control in self._control:
-            control.servoStop(SLOWS)
+        """Stop both arms where they are; the second one too if the first can't be told."""
+        failed = []
+        for host, control in zip(self._hosts, self._control, strict=False):
+            try:
+                control.servoStop(SLOWS)
+            except RuntimeError as error:
+                failed.append(f"{host} ({error})")
+        if failed:
+            raise RobotError(
+                f"{' and '.join(failed)} can't be told to stop and may still move; press the emergency stop"
+            )
 
     @contextmanager
     def _serving(self) -> Iterator[None]:
@@ -122,14 +158,20 @@ class UrLink:
         finally:
             self.stop()
 
-    def _refuse_if_stopped(self, arm: int) -> None:
-        receive = self._receive[arm]
-        if receive.isEmergencyStopped():
-            raise RobotError(f"the emergency stop of {self._hosts[arm]} is pressed; release it, then call park")
-        if receive.isProtectiveStopped():
-            raise RobotError(
-                f"{self._hosts[arm]} stopped to protect itself; look what it touches, unlock it at the pendant, "
-                "then call park"
-            )
+    def _refuse_if_stopped(self, arm: int, joints: Floats) -> None:
+        """Raises RobotError if an arm may not move, or is far from where it was sent last."""
+        receive, host = self._receive[arm], self._hosts[arm]
         if not receive.isConnected():
-            raise RobotError(f"the connection to {self._hosts[arm]} is lost; both arms were stopped")
+            raise RobotError(f"the connection to {host} is lost; both arms were stopped")
+        mode = receive.getSafetyMode()
+        if mode not in MAY_MOVE:
+            raise RobotError(
+                f"{host} {STOPS.get(mode, f'has a fault of its safety system ({mode})')}; look why, unlock it at the "
+                "pendant, then call park"
+            )
+        behind = float(np.abs(self.joints(arm) - joints).max())
+        if not behind <= LAGS:
+            raise RobotError(
+                f"{host} is {behind:.2f} rad behind its set points; look what is in its way and whether its speed is "
+                "turned down at the pendant, then call park"
+            )

@@ -106,15 +106,37 @@ class Moves:
         return None
 
     def parking(self, row: Floats) -> list[Motion] | Infeasible:
-        """From a row to where both arms are parked, as ways there that are gone backwards."""
+        """From a row to where both arms are parked: off the table first, then ways there that are gone backwards."""
+        lifted = self._off_the_table(row)
+        if isinstance(lifted, Infeasible):
+            return lifted
+        if lifted:
+            row = np.hstack([joints[-1] for joints in lifted[-1].joints])
         failure = Failure()
         works = [np.abs(end - kin.park).max() > 1e-6 for end, kin in zip(self.apart(row), self.kinematics, strict=True)]
         if not any(works):
-            return []
+            return lifted
         back = self.transit(row, (works[0], works[1]), failure)
         if back is None:
             return failure.infeasible()
-        return [backwards(self.motion("park", path, (False, False))) for path in reversed(back)]
+        return [*lifted, *(backwards(self.motion("park", path, (False, False))) for path in reversed(back))]
+
+    def _off_the_table(self, row: Floats) -> list[Motion] | Infeasible:
+        """Straight up with every hand whose tips press on the table, as after a stop while it takes cloth."""
+        motions: list[Motion] = []
+        for arm, kinematics in enumerate(self.kinematics):
+            joints = self.apart(row)[arm]
+            presses = self._cell.near_obstacles(arm, joints) is not None
+            if not presses or self._cell.near_obstacles(arm, joints, pressing=True) is not None:
+                continue
+            above = kinematics.forward(joints)
+            above[2, 3] += self.config.hover
+            lifts = self.along(row, arm, above, self.config.carry_speed)
+            if isinstance(lifts, Infeasible):
+                return lifts
+            motions += lifts
+            row = np.hstack([joints[-1] for joints in lifts[-1].joints])
+        return motions
 
     def along(self, row: Floats, arm: int, pose: Floats, speed: float) -> list[Motion] | Infeasible:
         """From a row with one tool on a straight line to a pose, at most at ``speed`` [m/s]."""

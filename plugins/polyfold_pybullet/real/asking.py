@@ -1,31 +1,67 @@
-"""Before anything moves, a person agrees."""
+"""Before anything moves, a person agrees; and whatever ends the program ends what moves."""
 
 from __future__ import annotations
 
+import signal
 import sys
-from typing import Literal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, Literal
 
 from polyfold.errors import RobotError
 
 Asks = Literal["each", "start", "never"]
 
+ENDINGS = ("SIGTERM", "SIGHUP")
+"""Signals that would end the program without a word: a closed terminal, a lost connection, a shutdown."""
 
-def ask(what: str) -> bool:
-    """Whether a person at the terminal says yes to what is about to be done; Enter is yes, ``s`` is to skip it.
+
+def agreed(what: str) -> None:
+    """Have a person at the terminal agree to what is about to be done, by ``y``.
+
+    What was typed before the question counts for nothing.
 
     Raises:
-        RobotError: if they say that it is enough, or nobody is there to say anything.
+        RobotError: if they don't agree, or nobody is there to.
     """
-    print(f"{what}\n  Enter: do it; s: skip it; q: stop here > ", end="", file=sys.stderr, flush=True)
-    try:
-        said = input().strip().casefold()
-    except (EOFError, OSError) as error:
+    terminal = sys.stdin
+    if terminal is None or terminal.closed or not terminal.isatty():
         raise RobotError(
-            "nobody is there to agree before arms move; run this at a terminal, or, where the cell is fenced off, "
+            "nobody is at a terminal to agree before arms move; run this at one, or, where the cell is fenced off, "
             "with confirm = never"
-        ) from error
-    if said in ("", "y", "yes"):
-        return True
-    if said in ("s", "skip"):
-        return False
-    raise RobotError("stopped by hand before the arms moved; run it again to go on from where the cloth lies")
+        )
+    _forget_what_was_typed(terminal)
+    print(f"{what}\n  y: do it (Ctrl-C stops the arms); q: stop here > ", end="", file=sys.stderr, flush=True)
+    while (said := terminal.readline().strip().casefold()) not in ("y", "yes"):
+        if said in ("q", "n", "no", ""):
+            raise RobotError("not agreed to, so nothing moves; run it again to go on from where the cloth lies")
+        print("  y or q > ", end="", file=sys.stderr, flush=True)
+
+
+def _forget_what_was_typed(terminal: Any) -> None:
+    try:
+        import termios
+
+        termios.tcflush(terminal.fileno(), termios.TCIFLUSH)
+    except (ImportError, OSError, ValueError):  # no such terminal, on this system or in a test
+        return
+
+
+@contextmanager
+def endings_raise() -> Iterator[None]:
+    """Signals that end the program raise SystemExit meanwhile, as Ctrl-C raises KeyboardInterrupt."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def end(number: int, _: Any) -> None:
+        raise SystemExit(128 + number)
+
+    numbers = [getattr(signal, name) for name in ENDINGS if hasattr(signal, name)]
+    before = {number: signal.signal(number, end) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -14,27 +14,38 @@ from polyfold.errors import ConfigError, RobotError
 from polyfold.geometry import Camera
 from polyfold.plugins.hardware import RgbdFrame
 from polyfold.types import Observation
+from polyfold_pybullet.calibrating import camera_pose
 from polyfold_pybullet.looking import Eye
 
 Floats = NDArray[np.float64]
 
 SEEN = 0.98
 """Share of the view that a camera must see."""
+STEEPEST = 30.0
+"""How far a camera may be turned from straight down [deg]: from farther off a stack of cloth hides what is beside."""
+LOOKS = 3
+"""How often a view is looked up again where cloth is high: each is nearer to where the ray from above meets it."""
 
 
-def read_eye(path: Path) -> Eye:
-    """Where a camera really is, from a file of ``polyfold calibrate``. Raises ConfigError if it is none."""
+def read_eye(path: Path) -> tuple[Eye, tuple[int, int] | None]:
+    """Where a camera really is, from a file of ``polyfold calibrate``, and the size of its pictures, (width, height).
+
+    Raises:
+        ConfigError: if it is none.
+    """
     advice = "calibrate the camera with 'polyfold calibrate' and name the camera.json that it writes"
     try:
         told: Any = json.loads(path.read_text(encoding="utf-8"))
-        eye = Eye(np.array(told["intrinsics"], float), np.array(told["pose"], float))
+        eye = Eye(np.array(told["intrinsics"], float), camera_pose(told["pose"], str(path)))
+        size = told.get("size")
     except OSError as error:
         raise ConfigError(f"{path} can't be read ({error.strerror}); {advice}") from error
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise ConfigError(f"{path} is no calibration ({error}); {advice}") from error
-    if eye.intrinsics.shape != (3, 3) or eye.pose.shape != (4, 4) or not np.isfinite(eye.pose).all():
-        raise ConfigError(f"{path} is no calibration; {advice}")
-    return eye
+    focal = eye.intrinsics[[0, 1], [0, 1]] if eye.intrinsics.shape == (3, 3) else np.zeros(2)
+    if not np.isfinite(eye.intrinsics).all() or (focal <= 0).any():
+        raise ConfigError(f"{path} is no calibration, its intrinsics are no pinhole matrix; {advice}")
+    return eye, None if size is None else (int(size[0]), int(size[1]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,13 +56,11 @@ class Overhead:
         camera: the pinhole that it is as seen by; its world is the robot's, moved and turned.
         centre: the point of the robot's world below it [m], shape (2,).
         turn: how far the picture's right is turned from the world's x, towards its y [rad].
-        table: height of the table in the robot's world [m].
     """
 
     camera: Camera
     centre: tuple[float, float]
     turn: float
-    table: float
 
     def observe(self, frame: RgbdFrame, eye: Eye | None = None) -> Observation:
         """What was measured, as seen from above.
@@ -71,16 +80,24 @@ class Overhead:
                 "the camera does not know where it is; calibrate it with 'polyfold calibrate', and name camera.json as "
                 "the cell's calibration"
             )
+        off = float(np.degrees(np.arccos(np.clip(-eye.pose[2, 2], -1.0, 1.0))))
+        if off > STEEPEST:
+            raise RobotError(
+                f"the camera looks {off:.0f} degrees off straight down, {STEEPEST:.0f} are the most; hang it higher, "
+                "or calibrate it anew"
+            )
         flat = np.zeros((self.camera.height, self.camera.width), np.float32)
         columns, rows = self._seen_at(flat, eye)
         height, width = frame.depth.shape
         inside = ((columns >= 0) & (rows >= 0) & (columns <= width - 1) & (rows <= height - 1)).mean()
         if inside < SEEN:
-            raise RobotError(f"the camera sees {inside:.0%} of the view; move the view (centre, extent), or the camera")
-        # Where cloth is high, the ray from above meets it elsewhere than at the table.
-        risen = self._measured(frame.depth, columns, rows, eye)
-        columns, rows = self._seen_at(np.where(np.isfinite(risen), risen, np.float32(0.0)), eye)
+            raise RobotError(
+                f"the camera sees {100 * inside:.1f} % of the view; move the view (centre, extent), or the camera"
+            )
         above = self._measured(frame.depth, columns, rows, eye)
+        for _ in range(LOOKS):  # where cloth is high, the ray from above meets it elsewhere than at the table
+            columns, rows = self._seen_at(np.where(np.isfinite(above), above, np.float32(0.0)), eye)
+            above = self._measured(frame.depth, columns, rows, eye)
         rgb = cv2.remap(frame.rgb, columns, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
         return Observation(np.asarray(rgb, np.uint8), (self.camera.elevation - above).astype(np.float32), self.camera)
 
@@ -91,9 +108,7 @@ class Overhead:
     def _in_the_robots_world(self, points: Floats) -> Floats:
         cosine, sine = np.cos(self.turn), np.sin(self.turn)
         x, y, z = np.moveaxis(points, -1, 0)
-        return np.stack(
-            [cosine * x - sine * y + self.centre[0], sine * x + cosine * y + self.centre[1], z + self.table], axis=-1
-        )
+        return np.stack([cosine * x - sine * y + self.centre[0], sine * x + cosine * y + self.centre[1], z], axis=-1)
 
     def _seen_at(self, heights: NDArray[np.float32], eye: Eye) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Columns and rows [px] at which the camera sees what lies so high; NaN for what lies behind it."""
@@ -117,4 +132,4 @@ class Overhead:
         pixels = np.stack([np.rint(columns), np.rint(rows), np.ones_like(columns)], axis=-1)
         rays = pixels @ inverse
         risen = (rays * depth[..., None]) @ eye.pose[2, :3] + eye.pose[2, 3]
-        return (risen - self.table).astype(np.float32)
+        return risen.astype(np.float32)

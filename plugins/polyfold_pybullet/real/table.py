@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -18,7 +19,7 @@ from polyfold.plugins import create
 from polyfold.plugins.hardware import DepthCamera, Infeasible, Robot
 from polyfold.types import Action, Observation, SimState
 from polyfold_pybullet.looking import Surface
-from polyfold_pybullet.real.asking import Asks, ask
+from polyfold_pybullet.real.asking import Asks, agreed, endings_raise
 from polyfold_pybullet.real.overhead import Overhead, read_eye
 
 Floats = NDArray[np.float64]
@@ -27,15 +28,20 @@ _log = logging.getLogger(__name__)
 
 ELEVATION = 2.0
 """Height of the pinhole that pictures are as seen by [m]."""
+LEVEL = 0.01
+"""A table that is measured farther than this from the robot's plane z = 0, at the middle or a corner of the view, is
+not where the robot thinks [m]: the camera's pose is wrong, or the robot's world."""
+CHANGED, BY = 0.01, 40
+"""Share of the picture that may differ, and by how many grey levels, between planning and moving."""
 
 
 class RealCell:
     """Folds real cloth. Implements :class:`polyfold.plugins.interfaces.Simulator` as far as anybody can.
 
     Nothing is opened or moved before :meth:`reset`, and nothing moves before a person has agreed at the terminal. What
-    is measured becomes a picture from straight above; picks and places go back from there into the robot's world. A
-    fold that can't be planned, or a pick without depth, leaves the cloth as it is and says why. Whatever goes wrong,
-    the arms are stopped first.
+    is measured becomes a picture from straight above; picks and places go back from there into the robot's world, of
+    which the table's top is the plane z = 0. A fold that can't be planned, or a pick without depth, leaves the cloth as
+    it is and says why. Whatever goes wrong, the arms are stopped first.
     """
 
     unattended: ClassVar[bool] = False
@@ -57,7 +63,6 @@ class RealCell:
         turn_deg: float = Field(
             default=0.0, ge=-180, le=180, description="how far the picture's right is turned from the world's x [deg]"
         )
-        table: float = Field(default=0.0, ge=-2, le=2, description="height of the table in the robot's world [m]")
         frames: int = Field(default=5, ge=1, le=100, description="pictures averaged")
         bite: float = Field(
             default=0.004, ge=0, le=0.05, description="how far below the measured surface the fingers close [m]"
@@ -65,13 +70,19 @@ class RealCell:
         confirm: Asks = Field(
             default="each", description="whether a person agrees to each fold, to the start, or never"
         )
-        dry_run: bool = Field(default=False, description="look, plan and ask, but move nothing")
+        picture: str | None = Field(
+            default=None,
+            description="where a picture of the next fold is left before it is asked for, such as next.png",
+        )
+        dry_run: bool = Field(default=False, description="look and plan the first fold, and move nothing")
 
     def __init__(self, config: Config) -> None:
         self.config = config
-        self._eye = None if config.calibration is None else read_eye(Path(config.calibration).expanduser())
+        self._eye, self._size = None, None
+        if config.calibration is not None:
+            self._eye, self._size = read_eye(Path(config.calibration).expanduser())
         view = Camera.framing(config.extent, elevation=ELEVATION)
-        self._overhead = Overhead(view, config.centre, float(np.radians(config.turn_deg)), config.table)
+        self._overhead = Overhead(view, config.centre, float(np.radians(config.turn_deg)))
         self._camera: DepthCamera = create("cameras", config.camera.name, config.camera.params)
         self._robot: Robot = create("robots", config.robot.name, config.robot.params)
 
@@ -79,24 +90,34 @@ class RealCell:
         """Have somebody lay the garment out, park the arms and take the first picture; ``seed`` decides nothing."""
         self._camera.connect()
         self._robot.connect()
-        if self.config.confirm != "never" and not ask(
-            f"Lay the {garment.kind} flat in the square of {self.config.extent:g} m around {self.config.centre} and "
-            "step back: the arms go to where they wait."
-        ):
-            raise RobotError("the start was skipped; run it again once the garment lies there")
         if not self.config.dry_run:
+            if self.config.confirm != "never":
+                agreed(
+                    f"Lay the {garment.kind} flat in the square of {self.config.extent:g} m around "
+                    f"{self.config.centre} and step back: the hands open, and the arms go to where they wait."
+                )
             self._moving(self._robot.park)
-        return self.observe()
+        seen = self.observe()
+        self._refuse_a_table_elsewhere(seen)
+        return seen
 
     def observe(self) -> Observation:
         """Look, averaging so many pictures."""
-        return self._overhead.observe(self._camera.get_rgbd(self.config.frames), self._eye)
+        frame = self._camera.get_rgbd(self.config.frames)
+        height, width = frame.depth.shape
+        if self._size is not None and self._size != (width, height):
+            raise RobotError(
+                f"the camera's pictures are {width} x {height}, those that it was calibrated with "
+                f"{self._size[0]} x {self._size[1]}; use that size, or calibrate with this one"
+            )
+        return self._overhead.observe(frame, self._eye)
 
     def execute(self, action: Action) -> Observation:
         """Plan the fold and, if a person agrees, do it."""
         action.check_inside(self._overhead.camera)
+        seen = self.observe()
         try:
-            picks, places = self._located(action, self.observe())
+            picks, places = self._located(action, seen)
         except GroundingError as error:
             return self._left_out(str(error))
         plan = self._robot.plan(picks, places)
@@ -106,10 +127,16 @@ class RealCell:
             f"({1000 * x:.0f}, {1000 * y:.0f}) to ({1000 * u:.0f}, {1000 * v:.0f}) mm"
             for (x, y, _), (u, v, _) in zip(picks, places, strict=True)
         )
-        if self.config.confirm == "each" and not ask(f"Next fold, {plan.mode}, {plan.duration:.0f} s: {told}."):
-            return self._left_out("it was skipped by hand")
+        self._show(seen, action)
         if self.config.dry_run:
-            return self._left_out(f"dry run; it would be done {plan.mode} in {plan.duration:.1f} s: {told}")
+            raise RobotError(
+                f"dry run, nothing moved: it would fold {plan.mode} in {plan.duration:.1f} s, {told}; "
+                "to do it, set dry_run to false"
+            )
+        if self.config.confirm == "each":
+            agreed(f"Next fold, {plan.mode}, {plan.duration:.0f} s: {told}.")
+            if _differs(seen, self.observe()):
+                return self._left_out("the picture changed while you were asked, so that the plan is of no use")
         self._moving(lambda: self._robot.execute(plan))
         return self.observe()
 
@@ -137,8 +164,33 @@ class RealCell:
             found.append((self._overhead.places(pixels, above), above))
         (picks, on_picks), (places, on_places) = found
         closes = np.maximum(on_picks - self.config.bite, 0.0) if action.heights is None else action.heights
-        picks[:, 2], places[:, 2] = self.config.table + closes, self.config.table + on_places + closes
+        picks[:, 2], places[:, 2] = closes, on_places + closes
         return picks, places
+
+    def _refuse_a_table_elsewhere(self, seen: Observation) -> None:
+        """Raises RobotError if the table is not measured where the robot's world has it."""
+        camera = seen.camera
+        across, down = camera.width - 1, camera.height - 1
+        places = np.array(
+            [[1.0, x, y] for x, y in ((across / 2, down / 2), (0, 0), (across, 0), (0, down), (across, down))]
+        )
+        heights = camera.elevation - places @ Surface.of(seen.depth).table
+        worst = float(heights[np.argmax(np.abs(heights))])
+        if abs(worst) > LEVEL:
+            raise RobotError(
+                f"the table is measured {1000 * worst:.0f} mm from where the robot's world has it (z = 0); calibrate "
+                "the camera in that world, or correct the world"
+            )
+
+    def _show(self, seen: Observation, action: Action) -> None:
+        """Leave a picture of the next fold."""
+        if self.config.picture is not None:
+            from polyfold import viz
+
+            path = Path(self.config.picture).expanduser()
+            path.parent.mkdir(parents=True, exist_ok=True)
+            viz.save(viz.overlay(seen, action=action, zoom=2.0), path)
+            print(f"the next fold is drawn in {path}", file=sys.stderr)
 
     def _left_out(self, reason: str) -> Observation:
         _log.warning("a fold is left out: %s", reason)
@@ -147,7 +199,14 @@ class RealCell:
     def _moving(self, motion: Any) -> None:
         """Do what moves; whatever goes wrong, Ctrl-C included, the arms are stopped before it is passed on."""
         try:
-            motion()
+            with endings_raise():
+                motion()
         except BaseException:
             self._robot.stop()
             raise
+
+
+def _differs(before: Observation, after: Observation) -> bool:
+    """Whether more of a picture changed than a camera's noise does."""
+    change = np.abs(before.rgb.astype(int) - after.rgb).max(axis=2) > BY
+    return float(change.mean()) > CHANGED
