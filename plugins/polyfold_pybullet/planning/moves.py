@@ -26,6 +26,8 @@ RESTARTS = 60
 """Of inverse kinematics: poses that take more are near the end of what can be reached, where nothing can be carried."""
 MARGIN = 0.02
 """What postures keep from the joints' limits, so that smooth curves through them don't pass those [rad]."""
+LIFTS = (1.0, 0.5, 0.2, 0.1)
+"""Shares of the height over the cloth to which a hand that presses on the table is lifted, the highest that can be."""
 
 
 class PlannerConfig(BaseModel):
@@ -129,14 +131,23 @@ class Moves:
             presses = self._cell.near_obstacles(arm, joints) is not None
             if not presses or self._cell.near_obstacles(arm, joints, pressing=True) is not None:
                 continue
-            above = kinematics.forward(joints)
-            above[2, 3] += self.config.hover
-            lifts = self.along(row, arm, above, self.config.carry_speed)
+            lifts = self._lifted(row, arm, kinematics.forward(joints))
             if isinstance(lifts, Infeasible):
                 return lifts
             motions += lifts
             row = np.hstack([joints[-1] for joints in lifts[-1].joints])
         return motions
+
+    def _lifted(self, row: Floats, arm: int, pose: Floats) -> list[Motion] | Infeasible:
+        """A tool straight up from a pose, as far as the arm can follow, but off the table."""
+        found: list[Motion] | Infeasible = Infeasible("the hand can't be lifted off the table", "transit")
+        for way in LIFTS:
+            above = pose.copy()
+            above[2, 3] += way * self.config.hover
+            found = self.along(row, arm, above, self.config.carry_speed)
+            if not isinstance(found, Infeasible):
+                break
+        return found
 
     def along(self, row: Floats, arm: int, pose: Floats, speed: float) -> list[Motion] | Infeasible:
         """From a row with one tool on a straight line to a pose, at most at ``speed`` [m/s]."""
