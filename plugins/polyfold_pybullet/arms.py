@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -133,6 +133,43 @@ class PybulletArms:
                 clock += plan.settling
             clock = self._run(motion, clock, watch)
 
+    def film(
+        self,
+        plan: FoldPlan,
+        step: float = 0.5,
+        size: tuple[int, int] = (420, 320),
+        before: Callable[[float], None] | None = None,
+        **view: Any,
+    ) -> Iterator[NDArray[np.uint8]]:
+        """Pictures of what a plan would do; nothing moves but what is drawn.
+
+        Args:
+            plan: of these arms.
+            step: time between two pictures [s].
+            size: of a picture, (width, height) [px].
+            before: called before each picture with the share of the carrying that is done, for what else is drawn.
+            view: where it is seen from, as of the cell's ``picture``.
+
+        Yields:
+            Pictures, uint8, shape (H, W, 3).
+        """
+        cell, _ = self._ready()
+        carrying = sum(motion.duration for motion in plan.motions if any(motion.closed))
+        done = 0.0
+        try:
+            for motion in plan.motions:
+                carries = any(motion.closed)
+                for time in np.arange(0.0, motion.duration, step):
+                    for arm, joints in enumerate(motion.at(np.array([time]))):
+                        cell.set_arm(arm, joints[0])
+                        cell.set_hand(arm, self._width_if(arm, motion.closed[arm]))
+                    if before is not None:
+                        before((done + carries * time) / carrying if carrying else 0.0)
+                    yield cell.picture(*size, **view)
+                done += carries * motion.duration
+        finally:
+            self._show()
+
     def move_linear(self, arm: int, pose: ArrayLike, speed: float = 0.1) -> None:
         """Move a tool on a straight line to a pose, at most at ``speed`` [m/s], while the other arm rests."""
         self._sync()
@@ -206,8 +243,12 @@ class PybulletArms:
             cell.set_hand(arm, self._width(arm))
 
     def _width(self, arm: int) -> float:
+        return self._width_if(arm, self._closed[arm])
+
+    def _width_if(self, arm: int, closed: bool) -> float:
+        """How far each finger of a hand is from its middle, closed or open [m]."""
         chosen = self._model().arms[arm]
-        return chosen.closed_width if self._closed[arm] else chosen.open_width
+        return chosen.closed_width if closed else chosen.open_width
 
     def _model(self) -> RobotModel:
         return self.config.model or robot_model(self.config.robot)

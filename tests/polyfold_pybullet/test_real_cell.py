@@ -8,6 +8,7 @@ import signal
 
 import numpy as np
 import pytest
+from PIL import Image
 from polyfold_pybullet.real.overhead import Overhead
 from real_world import CENTRE, INTRINSICS, TURN, World, components, tilted
 
@@ -139,9 +140,11 @@ def test_no_terminal_at_all_is_no_consent(world, monkeypatch):
 
 def test_each_fold_is_shown_and_asked_for(world, monkeypatch, capsys, tmp_path):
     says(monkeypatch, "y", "hm", "y")
-    folded(world, confirm="each", picture=str(tmp_path / "next.png"))
+    folded(world, confirm="each", picture=str(tmp_path / "next.png"), film=str(tmp_path / "new" / "next.gif"))
     assert world.moves == ["at once"]
     assert (tmp_path / "next.png").stat().st_size > 1000
+    with Image.open(tmp_path / "new" / "next.gif") as film:
+        assert film.n_frames > 10
     assert "y or q" in capsys.readouterr().err
     says(monkeypatch, "y", "q")
     with pytest.raises(RobotError, match="not agreed to"):

@@ -53,23 +53,13 @@ class FilmedCell(CellSimulator):
 
     def _filmed(self, plan: FoldPlan, moved: Sequence[Floats]) -> Iterator[NDArray[np.uint8]]:
         """Pictures of a plan; the cloth moves while hands are closed, and rests before and after."""
-        closed = [any(motion.closed) for motion in plan.motions]
-        carrying = [motion.duration for motion, holds in zip(plan.motions, closed, strict=True) if holds]
-        done = 0.0
-        for motion, holds in zip(plan.motions, closed, strict=True):
-            for time in np.arange(0.0, motion.duration, STEP):
-                share = (done + holds * time) / sum(carrying)
-                for arm, joints in enumerate(motion.at(np.array([time]))):
-                    self._arms.cell.set_arm(arm, joints[0])
-                    model = self._arms.cell.model.arms[arm]
-                    self._arms.cell.set_hand(arm, model.closed_width if motion.closed[arm] else model.open_width)
-                yield self._seen(moved[round(share * (len(moved) - 1))])
-            done += holds * motion.duration
-
-    def _seen(self, positions: Floats) -> NDArray[np.uint8]:
         colour = tuple(channel / 255 for channel in self._garment.colours[0])
-        self._arms.cell.drape(positions, self._garment.mesh.triangles, colour)
-        return self._arms.cell.picture(*self.size, eye=EYE, target=TARGET)
+
+        def drape(carried: float) -> None:
+            positions = moved[round(carried * (len(moved) - 1))]
+            self._arms.cell.drape(positions, self._garment.mesh.triangles, colour)
+
+        return self._arms.film(plan, STEP, self.size, drape, eye=EYE, target=TARGET)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

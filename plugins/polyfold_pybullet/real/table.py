@@ -16,9 +16,11 @@ from polyfold.errors import GroundingError, RobotError, SimulationError
 from polyfold.garments import Garment
 from polyfold.geometry import Camera
 from polyfold.plugins import create
-from polyfold.plugins.hardware import DepthCamera, Infeasible, Robot
+from polyfold.plugins.hardware import DepthCamera, Infeasible, Robot, RobotPlan
 from polyfold.types import Action, Observation, SimState
+from polyfold_pybullet.arms import PybulletArms
 from polyfold_pybullet.looking import Surface
+from polyfold_pybullet.planning.plans import FoldPlan
 from polyfold_pybullet.real.asking import Asks, agreed, endings_raise
 from polyfold_pybullet.real.overhead import Overhead, read_eye
 
@@ -74,6 +76,9 @@ class RealCell:
             default=None,
             description="where a picture of the next fold is left before it is asked for, such as next.png",
         )
+        film: str | None = Field(
+            default=None, description="where a film of the arms doing it is left besides, such as next.gif"
+        )
         dry_run: bool = Field(default=False, description="look and plan the first fold, and move nothing")
 
     def __init__(self, config: Config) -> None:
@@ -127,7 +132,7 @@ class RealCell:
             f"({1000 * x:.0f}, {1000 * y:.0f}) to ({1000 * u:.0f}, {1000 * v:.0f}) mm"
             for (x, y, _), (u, v, _) in zip(picks, places, strict=True)
         )
-        self._show(seen, action)
+        self._show(seen, action, plan)
         if self.config.dry_run:
             raise RobotError(
                 f"dry run, nothing moved: it would fold {plan.mode} in {plan.duration:.1f} s, {told}; "
@@ -182,15 +187,21 @@ class RealCell:
                 "the camera in that world, or correct the world"
             )
 
-    def _show(self, seen: Observation, action: Action) -> None:
-        """Leave a picture of the next fold."""
-        if self.config.picture is not None:
-            from polyfold import viz
+    def _show(self, seen: Observation, action: Action, plan: RobotPlan) -> None:
+        """Leave a picture of the next fold, and a film of it where the arms can show themselves."""
+        from polyfold import viz
 
-            path = Path(self.config.picture).expanduser()
-            path.parent.mkdir(parents=True, exist_ok=True)
-            viz.save(viz.overlay(seen, action=action, zoom=2.0), path)
-            print(f"the next fold is drawn in {path}", file=sys.stderr)
+        if self.config.picture is not None:
+            viz.save(viz.overlay(seen, action=action, zoom=2.0), _place(self.config.picture))
+            print(f"the next fold is drawn in {self.config.picture}", file=sys.stderr)
+        if self.config.film is not None:
+            if not isinstance(self._robot, PybulletArms) or not isinstance(plan, FoldPlan):
+                raise RobotError(
+                    f"the robot {self.config.robot.name!r} can't show itself; leave film out, or use one that plans in "
+                    "PyBullet"
+                )
+            viz.gif(list(self._robot.film(plan)), _place(self.config.film), fps=4)
+            print(f"the arms are shown doing it in {self.config.film}", file=sys.stderr)
 
     def _left_out(self, reason: str) -> Observation:
         _log.warning("a fold is left out: %s", reason)
@@ -204,6 +215,13 @@ class RealCell:
         except BaseException:
             self._robot.stop()
             raise
+
+
+def _place(path: str) -> Path:
+    """A file's path, its folder made."""
+    found = Path(path).expanduser()
+    found.parent.mkdir(parents=True, exist_ok=True)
+    return found
 
 
 def _differs(before: Observation, after: Observation) -> bool:
