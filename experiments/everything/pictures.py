@@ -24,6 +24,8 @@ DISTURBANCES = {
     "turned": "camera turned by [deg]",
 }
 """What disturbs by more or less, and how its axis reads."""
+CAUSES = ("infrastructure", "grounding", "subgoal", "fold line", "policy", "execution")
+"""First causes of failures, from seeing to folding."""
 AT_ZERO = {"depth noise": 1.0}
 """What an undisturbed cell counts as, where it is not 0."""
 
@@ -70,6 +72,26 @@ def curves(results: Results) -> bytes:
         axes.set_ylabel("episodes [%]")
     panels[0].set_ylim(-3, 103)
     panels[0].legend(fontsize=8, loc="lower left")
+    file = io.BytesIO()
+    figure.savefig(file, format="png", dpi=110)
+    return file.getvalue()
+
+
+def causes(results: Results) -> bytes:
+    """Where the failures of every variant come from, as a PNG: a bar of its first causes (the paper's Fig. 16)."""
+    from matplotlib.figure import Figure
+
+    variants = list(results.study.variants)
+    figure = Figure(figsize=(8.0, 0.8 + 0.26 * len(variants)), layout="constrained")
+    axes = figure.subplots()
+    left = np.zeros(len(variants))
+    for number, cause in enumerate(CAUSES):
+        shares = [100.0 * np.mean([r.cause == cause for r in results.of(variant)]) for variant in variants]
+        axes.barh(variants, shares, left=left, color=viz.PALETTE[number % len(viz.PALETTE)], label=cause)
+        left += shares
+    axes.invert_yaxis()
+    axes.set_xlabel(f"failed episodes [%], by their first cause; n = {len(results.of(variants[0]))} each")
+    axes.legend(fontsize=8)
     file = io.BytesIO()
     figure.savefig(file, format="png", dpi=110)
     return file.getvalue()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import polyfold
-from experiments.everything.pictures import curves, failures
+from experiments.everything.pictures import causes, curves, failures
 from polyfold.analysis import Results
 from polyfold.studies import Study
 from polyfold.studies._study import with_variants
@@ -28,7 +28,7 @@ class StudyStep:
         sections: what its file of results holds.
         also: further files of results made of the same episodes.
         pictured: whether ``results/NAME-failures.png`` shows what was folded wrongly.
-        drawn: what draws ``results/NAME.png``; nothing by default.
+        drawn: names of further pictures, and what draws them.
         variants: only these; all if empty.
         garments: instead of the study's own number.
     """
@@ -38,7 +38,7 @@ class StudyStep:
     sections: Callable[[Results], Sequence[Section]]
     also: tuple[tuple[str, Callable[[Results], Sequence[Section]]], ...] = ()
     pictured: bool = False
-    drawn: Callable[[Results], bytes] | None = None
+    drawn: tuple[tuple[str, Callable[[Results], bytes]], ...] = ()
     variants: tuple[str, ...] = ()
     garments: int | None = None
 
@@ -55,9 +55,7 @@ class StudyStep:
         found = {name: _text(sections(results)).encode() for name, sections in files.items()}
         if self.pictured:
             found[f"{self.name}-failures.png"] = failures(results, folder / self.name)
-        if self.drawn is not None:
-            found[f"{self.name}.png"] = self.drawn(results)
-        return found
+        return found | {name: draw(results) for name, draw in self.drawn}
 
 
 def _text(sections: Sequence[Section]) -> str:
@@ -156,7 +154,9 @@ STUDIES = (
     StudyStep("displaced", 0.2, _displaced),
     StudyStep("robustness", 1.0, _robustness),
     StudyStep("robot_cell", 0.5, _robot_cell),
-    StudyStep("disturbances", 0.5, _disturbances, drawn=curves),
+    StudyStep(
+        "disturbances", 1.0, _disturbances, drawn=(("disturbances.png", curves), ("disturbances-causes.png", causes))
+    ),
     StudyStep("ambiguous", 0.2, _table),
     StudyStep("planners", 0.5, _planners),
     StudyStep("groundings", 0.4, _groundings),

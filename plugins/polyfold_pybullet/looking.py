@@ -65,6 +65,32 @@ class Eye:
         return (rays * np.asarray(depth, float)[:, None]) @ self.pose[:3, :3].T + self.pose[:3, 3]
 
 
+def levelled(eye: Eye, surface: Surface, noticed: float) -> tuple[Eye, float]:
+    """The eye turned so that the table it sees is level and at z = 0, if it is off by more than ``noticed`` [rad].
+
+    A table says how a camera is tilted and how high it hangs; where it hangs, and how it is turned about the vertical,
+    it does not.
+
+    Returns:
+        The eye, and by how much it was tilted [rad]; the same eye if that is too little to tell from depth's errors.
+    """
+    from scipy.spatial.transform import Rotation
+
+    height, width = surface.depth.shape
+    corners = np.array([[0.0, 0.0], [width - 1.0, 0.0], [0.0, height - 1.0]])
+    first, across, down = eye.places(corners, surface.table @ np.column_stack([np.ones(3), corners]).T)
+    normal = np.cross(down - first, across - first)
+    normal *= np.sign(normal[2]) / np.linalg.norm(normal)
+    tilt = float(np.arccos(np.clip(normal[2], -1.0, 1.0)))
+    if tilt <= noticed:
+        return eye, tilt
+    back = Rotation.from_rotvec(tilt * np.array([normal[1], -normal[0], 0.0]) / np.hypot(*normal[:2])).as_matrix()
+    pose = eye.pose.copy()
+    pose[:3, :3] = back @ eye.pose[:3, :3]
+    pose[2, 3] = float(normal @ (eye.pose[:3, 3] - first))
+    return Eye(eye.intrinsics, pose), tilt
+
+
 @dataclass(frozen=True, eq=False)
 class Surface:
     """A depth image with the table's plane fitted to it, which takes the plane out of the camera's errors.

@@ -32,6 +32,8 @@ _log = logging.getLogger(__name__)
 
 ELEVATION = 0.9
 """Height of the camera of ``xpbd``, unless its parameters say otherwise [m]."""
+SURE = 3.0
+"""A tilt of so many times what depth's bias alone looks like is the camera's."""
 NEAR_PICK = 0.015
 """Cloth so near to a pick lies between the fingers [m]."""
 
@@ -139,6 +141,7 @@ class CellSimulator:
         self._depth: NoisyDepth | None = None
         self._painted: PaintedCell | None = None
         self._folds: tuple[CellFold, ...] = ()
+        self._levelled = False
         self._told: tuple[tuple[int, ...], tuple[float, ...], tuple[float, ...]] | None = None
 
     def reset(self, garment: Garment, seed: int) -> Observation:
@@ -153,7 +156,7 @@ class CellSimulator:
         self._eye = calibrated_eye(seen.camera, self.config.views, seed).after_a_push(*pushed, seed)
         self._painted = PaintedCell(self.config.scenery, seen.camera.height, seen.camera.width, seed)
         self._depth = NoisyDepth(self.config.noise, seen.camera.height, seen.camera.width, seed)
-        self._folds, self._told = (), None
+        self._folds, self._told, self._levelled = (), None, False
         return self._measured(seen)
 
     def observe(self) -> Observation:
@@ -212,15 +215,25 @@ class CellSimulator:
 
         Heights are counted from the table, which the arms know better than the camera does.
         """
-        from polyfold_pybullet.looking import Surface
+        from polyfold_pybullet.looking import Surface, levelled
 
         assert self._depth is not None
         assert self._eye is not None
         surface = Surface.of(self._depth.measure(seen.depth, self.config.frames))
+        # Three times the tilt that the depth's own bias looks like, over half of the picture.
+        half = 0.5 * min(seen.camera.width, seen.camera.height) / seen.camera.pixels_per_metre
+        eye, tilt = levelled(self._eye, surface, SURE * self.config.noise.bias / half)
+        if eye is not self._eye and not self._levelled:
+            self._levelled = True
+            _log.warning(
+                "the camera is tilted by %.1f degrees from where it was calibrated; the table sets that right, but "
+                "calibrate it again",
+                np.degrees(tilt),
+            )
         found = []
         for pixels in (action.picks, action.places):
             above, table = np.array([surface.at(pixel) for pixel in pixels]).T
-            where = self._eye.places(pixels, table - above)
+            where = eye.places(pixels, table - above)
             found.append(np.column_stack([where[:, :2], np.maximum(above, 0.0)]))
         picks, places = found
         picks[:, 2] = np.maximum(picks[:, 2] - self.config.bite, 0.0) if action.heights is None else action.heights

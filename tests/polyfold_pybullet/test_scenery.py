@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
-from polyfold_pybullet.looking import Eye
+from polyfold_pybullet.looking import Eye, Surface, levelled
 from polyfold_pybullet.scenery import PaintedCell, Scenery
+from scipy.spatial.transform import Rotation
 
 from polyfold import plugins
 from polyfold.errors import ConfigError
 from polyfold.geometry import Camera, iou
+from polyfold.types import Action
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +69,38 @@ def test_a_push_moves_the_camera_by_as_much_as_told():
     turned = eye.pose[:3, :3].T @ pushed.pose[:3, :3]
     assert np.degrees(np.arccos((np.trace(turned) - 1) / 2)) == pytest.approx(1.0)
     assert np.allclose(eye.after_a_push(0.0, 0.0, 3).pose, eye.pose)
+
+
+@pytest.mark.parametrize("turn_deg", [1.0, 4.0])
+def test_a_tilted_camera_is_levelled_by_the_table_that_it_sees(seen, turn_deg):
+    eye = Eye.true(seen.camera)
+    surface = Surface.of(seen.depth)
+    pixels = np.array([[120.0, 300.0], [280.0, 140.0]])
+    depths = surface.table @ np.column_stack([np.ones(2), pixels]).T
+    due = eye.places(pixels, depths)
+    about = np.array([np.cos(0.7), np.sin(0.7), 0.0])
+    off = np.eye(4)
+    off[:3, :3] = Rotation.from_rotvec(np.radians(turn_deg) * about).as_matrix()
+    off[2, 3] = 0.004
+    tilted = Eye(eye.intrinsics, eye.pose @ off)
+    assert np.abs(tilted.places(pixels, depths) - due).max() > 0.01
+    found, tilt = levelled(tilted, surface, np.radians(0.7))
+    assert np.degrees(tilt) == pytest.approx(turn_deg, abs=0.01)
+    assert np.abs(found.places(pixels, depths) - due).max() < 0.0005
+    assert levelled(eye, surface, np.radians(0.7)) == (eye, pytest.approx(0.0, abs=1e-4))
+
+
+def test_a_cell_says_that_its_camera_was_tilted_and_folds_all_the_same(caplog):
+    exact = {"disparity_noise": 0, "quantum": 0, "bias": 0.0005, "dropouts": 0, "edge_px": 0}
+    simulator = plugins.create("simulators", "pybullet", {"views": 0, "noise": exact, "moved_deg": 2.0})
+    simulator.reset(plugins.generate_garment("rectangle", 2002, 0.03), 1)
+    corners = simulator.state().keypoint_pixels()
+    picks = np.array([corners["bottom_left"], corners["bottom_right"]])
+    simulator.execute(Action(picks, np.array([corners["top_left"], corners["top_right"]])))
+    assert "tilted by" in caplog.text
+    (fold,) = simulator.state().extra["cell"]
+    simulator.close()
+    assert fold["mode"] in ("at once", "in sequence")
 
 
 def test_a_cell_takes_scenery_and_refuses_what_it_is_not():
