@@ -26,6 +26,17 @@ def test_jobs_are_read_as_workers_become_free():
     results.close()
 
 
+def threads_of_opencv(_):
+    import cv2
+
+    return cv2.getNumThreads()
+
+
+def test_workers_keep_to_one_thread_each():
+    _, *in_workers = in_processes(threads_of_opencv, range(4), 2)
+    assert [threads for _, threads in in_workers] == [1, 1, 1]
+
+
 def test_an_error_of_a_job_ends_the_run_with_that_error():
     with pytest.raises(TypeError):
         list(in_processes(abs, [1, 2, "three"], 2))
