@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import logging
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -207,7 +208,7 @@ class RealCell:
         _log.warning("a fold is left out: %s", reason)
         return self.observe()
 
-    def _moving(self, motion: Any) -> None:
+    def _moving(self, motion: Callable[[], None]) -> None:
         """Do what moves; whatever goes wrong, Ctrl-C included, the arms are stopped before it is passed on."""
         try:
             with endings_raise():
