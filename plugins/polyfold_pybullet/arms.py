@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from polyfold_pybullet.planning import FoldPlan, FoldPlanner, Motion
 
 Floats = NDArray[np.float64]
-
-THERE = 0.005
-"""Joints so near to where a plan begins are there [rad]: arms that rest are measured with an error."""
 
 
 class PybulletArms:
@@ -46,6 +43,9 @@ class PybulletArms:
             default=1.0, ge=0.01, le=5, description="fastest move of a tool that does not [m/s]"
         )
         interval: float = Field(default=0.02, ge=0.001, le=1, description="time between two steps of a motion [s]")
+
+    _there: ClassVar[float] = 1e-3
+    """How far joints may be from where a plan begins [rad]."""
 
     def __init__(self, config: Config | None = None) -> None:
         self.config = config or self.Config()
@@ -124,7 +124,7 @@ class PybulletArms:
             raise RobotError("this is no plan of these arms; give one that their plan method returned")
         self._refuse_after_a_stop()
         for joints, now in zip(plan.motions[0].joints, self._joints, strict=True):
-            if np.abs(joints[0] - now).max() > THERE:
+            if np.abs(joints[0] - now).max() > self._there:
                 raise RobotError("the arms are not where the plan begins; call park first")
         clock = 0.0
         for motion in plan.motions:

@@ -141,7 +141,7 @@ class CellSimulator:
         self._depth: NoisyDepth | None = None
         self._painted: PaintedCell | None = None
         self._folds: tuple[CellFold, ...] = ()
-        self._levelled = False
+        self._warned = False
         self._told: tuple[tuple[int, ...], tuple[float, ...], tuple[float, ...]] | None = None
 
     def reset(self, garment: Garment, seed: int) -> Observation:
@@ -156,7 +156,7 @@ class CellSimulator:
         self._eye = calibrated_eye(seen.camera, self.config.views, seed).after_a_push(*pushed, seed)
         self._painted = PaintedCell(self.config.scenery, seen.camera.height, seen.camera.width, seed)
         self._depth = NoisyDepth(self.config.noise, seen.camera.height, seen.camera.width, seed)
-        self._folds, self._told, self._levelled = (), None, False
+        self._folds, self._told, self._warned = (), None, False
         return self._measured(seen)
 
     def observe(self) -> Observation:
@@ -223,8 +223,8 @@ class CellSimulator:
         # Three times the tilt that the depth's own bias looks like, over half of the picture.
         half = 0.5 * min(seen.camera.width, seen.camera.height) / seen.camera.pixels_per_metre
         eye, tilt = levelled(self._eye, surface, SURE * self.config.noise.bias / half)
-        if eye is not self._eye and not self._levelled:
-            self._levelled = True
+        if eye is not self._eye and not self._warned:
+            self._warned = True
             _log.warning(
                 "the camera is tilted by %.1f degrees from where it was calibrated; the table sets that right, but "
                 "calibrate it again",

@@ -123,6 +123,7 @@ def save(episode: Episode, folder: Path, frames: Sequence[Observation] = (), sta
     write_atomically(folder / "episode.json", record.model_dump_json(indent=2) + "\n")
     write_atomically(folder / "transcript.jsonl", transcript_lines(episode.calls))
     viz.save(viz.filmstrip_of(episode), folder / "filmstrip.png")
+    (folder / "fold.gif").unlink(missing_ok=True)  # an earlier fold's
     if frames:
         motion = [episode.start.rgb, *(frame.rgb for frame in frames), episode.final.rgb]
         viz.gif(motion, folder / "fold.gif", fps=GIF_RATE)

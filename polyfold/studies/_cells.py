@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from polyfold import plugins
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.evaluation import suite
-from polyfold.studies._study import Study
+from polyfold.studies._study import Study, experiment_of
 from polyfold.tasks import OpenTask, Task
 
 
@@ -62,6 +62,8 @@ def _agent_seed(study: Study, task: Task | OpenTask, garment_seed: int, wording:
 
 def cells(study: Study) -> Iterator[Cell]:
     """Every episode of a study, in a fixed order that mixes kinds, so that progress is representative."""
+    for variant in study.variants:
+        experiment_of(study, variant)
     _check_metrics(study)
     chosen = _chosen_tasks(study)
     _check_sizes(study)

@@ -43,7 +43,8 @@ class Irc5:
         self.joints = {f"ROB_{arm + 1}": list(row) for arm, row in enumerate(joints)}
         self.files, self.signals, self.ran, self.log = {}, {}, [], []
         self.motors, self.running, self.seconds, self.fails, self.stopped = "motoron", False, 0.0, "", 0
-        self.blocked, self.silent, self.started, self.on_upload = {}, set(), 0, None
+        self.blocked, self.silent, self.started = {}, set(), 0
+        self.on_upload = self.on_start = None
         self.entry(1, 0, "start")
         self._lock = threading.Lock()
 
@@ -93,6 +94,8 @@ class Irc5:
             return states({"_value": "ramdisk"})
         if path == "rw/rapid/execution":
             if "action=start" in query:
+                if self.on_start is not None:
+                    self.on_start()
                 self.start()
             if "action=stop" in query:
                 self.running, self.stopped = False, self.stopped + 1

@@ -171,6 +171,17 @@ def test_a_stop_during_the_upload_keeps_the_program_from_starting(arms, irc5):
     assert irc5.started == started
 
 
+def test_a_stop_just_before_the_controller_begins_stops_what_it_begins(arms, irc5):
+    arms.connect()
+    arms.park()
+    plan = arms.plan(PICKS, PLACES)
+    irc5.seconds, irc5.on_start = 5.0, arms.stop
+    with pytest.raises(RobotError, match="were stopped"):
+        arms.execute(plan)
+    assert irc5.stopped == 2, "once too early, and once it ran"
+    assert not irc5.running
+
+
 def test_a_controller_that_falls_silent_is_given_up_and_said_to_move_on(arms, irc5, monkeypatch):
     monkeypatch.setattr("polyfold_pybullet.drivers.abb.ANSWERS", 0.2)
     arms.connect()

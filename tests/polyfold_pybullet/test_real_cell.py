@@ -237,13 +237,14 @@ def test_holes_in_the_depth_leave_the_fold_out_and_say_why(world, caplog):
     simulator.close()
 
 
-def test_real_cloth_can_not_be_put_back_or_studied(world):
+def test_real_cloth_can_not_be_put_back_or_studied(world, tmp_path):
     simulator = cell()
     with pytest.raises(SimulationError, match="can't be put back"):
         simulator.restore(simulator.state())
     study = polyfold.Study(name="s", base={"simulator": {"name": "real-cell", "camera": "tripod", "robot": "careful"}})
     with pytest.raises(ConfigError, match="folds on a real table"):
-        polyfold.run(study, "unused")
+        polyfold.run(study, tmp_path / "run")
+    assert not (tmp_path / "run").exists()
 
 
 def test_the_file_of_a_calibration_is_used_and_a_wrong_one_named(world, tmp_path):

@@ -273,6 +273,22 @@ def test_arms_stand_still_where_they_would_tear_the_cloth(simulator):
     assert 0.2 < max(seen) < 0.26
 
 
+def test_cloth_that_would_be_torn_all_the_same_slips_out_of_the_grip(simulator):
+    towel = plugins.generate_garment("square", 5096, 0.0155)
+    simulator.reset(towel, 5096)
+    simulator.execute(half_of_square(simulator))
+    assert simulator.state().slipped == (0.0, 0.0)
+    simulator.reset(towel, 5096)
+    before = simulator.state()
+    picks, places = np.array([[195.0, 236.0], [285.0, 105.0]]), np.array([[49.9, 43.92], [226.06, 49.71]])
+    simulator.execute(Action(picks, places))
+    after = simulator.state()
+    assert max(after.slipped) > 0.0
+    assert strain(towel.mesh, after.positions).max() < 0.25
+    simulator.restore(before)
+    assert simulator.state().slipped is None
+
+
 def test_cloth_that_is_stretched_where_it_lies_can_be_lifted_all_the_same(simulator):
     towel = plugins.generate_garment("rectangle", 5029, 0.0155)
     simulator.reset(towel, 5029)

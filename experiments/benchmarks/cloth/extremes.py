@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.benchmarks.cloth.folding import cloth_mask
-from experiments.benchmarks.cloth.measures import edges_of
+from experiments.benchmarks.cloth.measures import strain
 from polyfold import plugins
 from polyfold.errors import SimulationError
 from polyfold.logs import JsonLines
@@ -108,25 +108,23 @@ def extreme_folds(seed: int) -> list[Extreme]:
     simulator = plugins.create("simulators", "xpbd")
     kind, rng = KINDS[seed % 4], np.random.default_rng(seed)
     garment = plugins.generate_garment(kind, seed, EDGE)
-    edges = edges_of(garment.mesh)
-    lengths = np.linalg.norm(np.diff(garment.mesh.vertices[edges], axis=1)[:, 0], axis=1)
 
-    def strain() -> NDArray[np.float64]:
-        return np.linalg.norm(np.diff(simulator.state().positions[edges], axis=1)[:, 0], axis=1) / lengths - 1.0
+    def stretched() -> NDArray[np.float64]:
+        return strain(garment.mesh, simulator.state().positions)
 
     picture, folds = simulator.reset(garment, seed), []
     for _ in range(2):
         action = _extreme_action(cloth_mask(picture), rng)
         told: dict[str, Any] = {"picks": action.picks.round(2).tolist(), "places": action.places.round(2).tolist()}
         on_the_way: list[float] = []
-        simulator.record(lambda _, seen=on_the_way: seen.append(float(strain().max())), LOOKS)
+        simulator.record(lambda _, seen=on_the_way: seen.append(float(stretched().max())), LOOKS)
         clock = time.process_time()
         try:
             picture = simulator.execute(action)
         except SimulationError:
             folds.append(Extreme(kind, seed, **told, seconds=time.process_time() - clock, diverged=True))
             continue
-        told["seconds"], state, at_rest = time.process_time() - clock, simulator.state(), strain()
+        told["seconds"], state, at_rest = time.process_time() - clock, simulator.state(), stretched()
         told["rest"], told["pressed"] = float(at_rest.max()), float(-at_rest.min())
         told["ever"], told["height"] = max(*on_the_way, told["rest"]), float(state.positions[:, 2].max())
         told["short"], told["slipped"] = max(state.short or (0.0,)), max(state.slipped or (0.0,))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,7 @@ from polyfold.garments import Mesh
 Floats = NDArray[np.float64]
 
 
+@lru_cache(maxsize=4)
 def edges_of(mesh: Mesh) -> NDArray[np.int64]:
     """Unique vertex pairs, shape (E, 2)."""
     t = np.asarray(mesh.triangles, np.int64)

@@ -120,12 +120,8 @@ class AbbLink:
 
         self._stopper = self._services()
         self._client = abb.MotionProgramExecClient(abb_client=self._services())
-        with self._answering():
-            motors = self._client.abb_client.get_controller_state()
-            running = self._client.is_motion_program_running()
-        if motors != "motoron":
-            raise RobotError(f"the motors at {self._config.url} are off ({motors}); switch them on, in automatic mode")
-        if running:
+        self.recover()
+        if self._runs():
             raise RobotError(f"a program runs at {self._config.url}; stop it first")
 
     def close(self) -> None:
@@ -140,7 +136,7 @@ class AbbLink:
         with self._answering():
             motors = self._client.abb_client.get_controller_state()
         if motors != "motoron":
-            raise RobotError(f"the motors at {self._config.url} are off ({motors}); switch them on, then call park")
+            raise RobotError(f"the motors at {self._config.url} are off ({motors}); switch them on, in automatic mode")
 
     def joints(self, arm: int) -> Floats:
         """Joint angles, as measured [rad], shape (N,), from the base on."""
@@ -232,7 +228,11 @@ class AbbLink:
             def start(self, cycle: str | None = "asis", tasks: list[str] | None = None) -> Any:
                 link._each(0.0)
                 link._begun = True
-                return super().start(cycle, tasks)
+                try:
+                    return super().start(cycle, tasks)
+                finally:
+                    # A stop that came before the controller had begun stopped nothing; what follows stops again.
+                    link._begun = True
 
         found = Services(config.url, config.user, os.environ.get(config.password_env, "robotics"))
         for scheme in ("http://", "https://"):

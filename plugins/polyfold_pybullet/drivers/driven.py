@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,6 +69,9 @@ class DrivenArms(PybulletArms):
         transit_speed: float = Field(
             default=0.25, ge=0.01, le=1, description="fastest move of a tool that does not [m/s]"
         )
+
+    _there: ClassVar[float] = 0.005
+    """Arms that rest are measured with an error."""
 
     def __init__(self, config: Config, link: Link) -> None:
         super().__init__(config)

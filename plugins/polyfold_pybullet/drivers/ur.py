@@ -112,12 +112,15 @@ class UrLink:
     def recover(self) -> None:
         """Have both controllers listen again, as they don't after a stop of their own."""
         for host, control in zip(self._hosts, self._control, strict=True):
-            if not control.isProgramRunning() and not control.reuploadScript():
+            with _reached(host):
+                listens = control.isProgramRunning() or control.reuploadScript()
+            if not listens:
                 raise RobotError(f"the controller at {host} does not listen; unlock it at the pendant, then call park")
 
     def joints(self, arm: int) -> Floats:
         """Joint angles, as measured [rad], shape (6,)."""
-        return np.array(self._receive[arm].getActualQ(), float)
+        with _reached(self._hosts[arm]):
+            return np.array(self._receive[arm].getActualQ(), float)
 
     def follow(self, motion: Motion, interval: float, each: Callable[[float], None]) -> None:
         """Send both arms their set points, one after the other in every interval."""
@@ -127,8 +130,10 @@ class UrLink:
                 at = min(count * interval, motion.duration)
                 each(at)
                 for arm, joints in enumerate(motion.at(np.array([at]))):
-                    self._refuse_if_stopped(arm, joints[0])
-                    if not self._control[arm].servoJ(joints[0].tolist(), 0.0, 0.0, interval, LOOKAHEAD, GAIN):
+                    with _reached(self._hosts[arm]):
+                        self._refuse_if_stopped(arm, joints[0])
+                        taken = self._control[arm].servoJ(joints[0].tolist(), 0.0, 0.0, interval, LOOKAHEAD, GAIN)
+                    if not taken:
                         raise RobotError(f"{self._hosts[arm]} takes no more set points; both arms were stopped")
                 due = max(due + interval, time.monotonic() - LATE * interval)
                 time.sleep(max(0.0, due - time.monotonic()))
@@ -175,3 +180,12 @@ class UrLink:
                 f"{host} is {behind:.2f} rad behind its set points; look what is in its way and whether its speed is "
                 "turned down at the pendant, then call park"
             )
+
+
+@contextmanager
+def _reached(host: str) -> Iterator[None]:
+    """What the library raises where a controller does not answer, as a RobotError (which is no RuntimeError)."""
+    try:
+        yield
+    except RuntimeError as error:
+        raise RobotError(f"the connection to {host} is lost ({error}); look whether its arm rests") from error

@@ -128,8 +128,10 @@ class Moves:
         motions: list[Motion] = []
         for arm, kinematics in enumerate(self.kinematics):
             joints = self.apart(row)[arm]
-            presses = self._cell.near_obstacles(arm, joints) is not None
-            if not presses or self._cell.near_obstacles(arm, joints, pressing=True) is not None:
+            free, free_but_for_tips = (
+                self._cell.near_obstacles(arm, joints, pressing) is None for pressing in (False, True)
+            )
+            if free or not free_but_for_tips:
                 continue
             lifts = self._lifted(row, arm, kinematics.forward(joints))
             if isinstance(lifts, Infeasible):
