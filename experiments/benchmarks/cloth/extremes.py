@@ -185,7 +185,10 @@ def table(folds: Sequence[Extreme]) -> list[str]:
 
 def _long_for_their_kind(folds: Sequence[Extreme]) -> int:
     """How many took longer than five times the median of their kind: t-shirts have two plies and many particles."""
-    usual = {kind: statistics.median(fold.seconds for fold in folds if fold.kind == kind) for kind in KINDS}
+    usual = {
+        kind: statistics.median(fold.seconds for fold in folds if fold.kind == kind)
+        for kind in {fold.kind for fold in folds}
+    }
     return sum(fold.seconds > 5 * usual[fold.kind] for fold in folds)
 
 
