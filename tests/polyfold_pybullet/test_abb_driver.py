@@ -110,12 +110,18 @@ def test_a_stop_from_another_thread_ends_the_program_and_park_goes_on(arms, irc5
     arms.connect()
     arms.park()
     plan = arms.plan(PICKS, PLACES)
-    irc5.seconds = 5.0
-    threading.Timer(0.3, arms.stop).start()
+    irc5.seconds = 60.0
+
+    def stop():
+        while not irc5.running:
+            time.sleep(0.01)
+        arms.stop()
+
+    threading.Thread(target=stop, daemon=True).start()
     clock = time.monotonic()
     with pytest.raises(RobotError, match="were stopped"):
         arms.execute(plan)
-    assert time.monotonic() - clock < 3.0
+    assert time.monotonic() - clock < irc5.seconds / 2
     assert irc5.stopped
     irc5.seconds = 0.0
     arms.park()
