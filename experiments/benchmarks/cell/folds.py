@@ -48,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     centre, sides = WORKSPACES[options.robot]
     model = robot_model(options.robot)
     folds = islice(drawn_folds(options.seed, centre, sides), options.folds)
-    with Cell(model) as cell, Cell(model) as other:
+    with Cell(model) as cell, Cell(model, lean=False) as other:
         planner = FoldPlanner(cell)
         tried = [
             _try(planner, other, fold) for fold in tqdm(folds, total=options.folds, file=sys.stderr, mininterval=2.0)
