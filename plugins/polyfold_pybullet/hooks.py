@@ -28,7 +28,8 @@ def register_simulators(register):
 
 @hookimpl
 def register_commands(register):
-    """Register the verb."""
+    """Register the verbs."""
     register(
         "calibrate", "polyfold_pybullet.calibrating:Calibrate", "find where a camera is that looks at a board in a hand"
     )
+    register("cell", "polyfold_pybullet.real.command:CellCommand", "look through a real cell's camera, park its arms")

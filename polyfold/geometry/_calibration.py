@@ -109,6 +109,19 @@ class Calibration:
             raise GarmentError(f"corners are {found.error:.0f} px from where they should be at best; {ADVICE}")
         return found
 
+    @staticmethod
+    def seen_of(picture: NDArray[np.uint8], board: str) -> int:
+        """How many corners of a board can be told in a picture, uint8, shape (H, W, 3); 0 if too few for a view.
+
+        Raises:
+            GarmentError: if the board's description can't be read.
+        """
+        described(board)
+        try:
+            return len(find_board(picture, board)[0])
+        except GarmentError:
+            return 0
+
     @property
     def errors(self) -> dict[int, float]:
         """Root mean square distance of corners from where they should be [px], by the number of the view."""

@@ -311,6 +311,11 @@ def _calibrations():
         yield Case("calibration", content, (*FOLD, *cell, "--set", "simulator.calibration=FILE"))
 
 
+def _cells():
+    for content in ("", "[simulator", 'simulator = "xpbd"', 'simulator = "real-cell"', 'camera = "realsense"'):
+        yield Case("cell", content, ("cell", "park", "--config", "FILE"), name="file.toml")
+
+
 def _weights():
     for content, about in (
         (b"", "empty"),
@@ -396,7 +401,7 @@ def _options():
 def cases():
     """All of them."""
     makers = (
-        _experiments, _studies, _suites, _meshes, _outlines, _pictures, _sheets, _cassettes, _calibrations, _weights,
+        _experiments, _studies, _suites, _meshes, _outlines, _pictures, _sheets, _cassettes, _calibrations, _cells, _weights,
         _data, _runs, _options,
     )  # fmt: skip
     return [case for maker in makers for case in maker()]

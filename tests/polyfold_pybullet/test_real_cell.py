@@ -203,7 +203,7 @@ def test_an_error_while_moving_stops_the_arms(world, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(simulator._robot, "execute", interrupted)
+    monkeypatch.setattr(simulator.robot, "execute", interrupted)
     pixels = simulator.observe().camera.to_pixels(np.array([[0.0, -0.1], [0.0, 0.05]]))
     with pytest.raises(KeyboardInterrupt):
         simulator.execute(Action(pixels[:1], pixels[1:]))
@@ -278,7 +278,7 @@ def test_a_closed_terminal_stops_the_arms(world, monkeypatch):
     simulator = cell()
     simulator.reset(world.garment, 0)
     pixels = simulator.observe().camera.to_pixels(np.array([[0.0, -0.1], [0.0, 0.05]]))
-    monkeypatch.setattr(simulator._robot, "execute", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
+    monkeypatch.setattr(simulator.robot, "execute", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
     with pytest.raises(SystemExit):
         simulator.execute(Action(pixels[:1], pixels[1:]))
     assert world.stops == 1

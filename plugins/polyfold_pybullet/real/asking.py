@@ -25,18 +25,35 @@ def agreed(what: str) -> None:
     Raises:
         RobotError: if they don't agree, or nobody is there to.
     """
-    terminal = sys.stdin
-    if terminal is None or terminal.closed or not terminal.isatty():
-        raise RobotError(
-            "nobody is at a terminal to agree before arms move; run this at one, or, where the cell is fenced off, "
-            "with confirm = never"
-        )
-    _forget_what_was_typed(terminal)
+    terminal = _terminal(
+        "to agree before arms move; run this at one, or, where the cell is fenced off, with confirm = never"
+    )
     print(f"{what}\n  y: do it (Ctrl-C stops the arms); q: stop here > ", end="", file=sys.stderr, flush=True)
     while (said := terminal.readline().strip().casefold()) not in ("y", "yes"):
         if said in ("q", "n", "no", ""):
             raise RobotError("not agreed to, so nothing moves; run it again to go on from where the cloth lies")
         print("  y or q > ", end="", file=sys.stderr, flush=True)
+
+
+def wants_more(what: str) -> bool:
+    """Whether a person at the terminal, who does what is said, presses Enter for one more; ``q`` is enough.
+
+    Raises:
+        RobotError: if nobody is there.
+    """
+    terminal = _terminal("to press Enter for each view; run this at one")
+    print(f"{what}\n  Enter: take it; q: enough > ", end="", file=sys.stderr, flush=True)
+    said = terminal.readline()
+    return said != "" and said.strip().casefold() not in ("q", "quit", "n", "no")
+
+
+def _terminal(what_for: str) -> Any:
+    """The terminal, with nothing typed ahead. Raises RobotError if nobody is at one."""
+    terminal = sys.stdin
+    if terminal is None or terminal.closed or not terminal.isatty():
+        raise RobotError(f"nobody is at a terminal {what_for}")
+    _forget_what_was_typed(terminal)
+    return terminal
 
 
 def _forget_what_was_typed(terminal: Any) -> None:

@@ -17,7 +17,7 @@ from polyfold.errors import GroundingError, RobotError, SimulationError
 from polyfold.garments import Garment
 from polyfold.geometry import Camera
 from polyfold.plugins import create
-from polyfold.plugins.hardware import DepthCamera, Infeasible, Robot, RobotPlan
+from polyfold.plugins.hardware import DepthCamera, Infeasible, RgbdFrame, Robot, RobotPlan
 from polyfold.types import Action, Observation, SimState
 from polyfold_pybullet.arms import PybulletArms
 from polyfold_pybullet.looking import Surface
@@ -89,27 +89,38 @@ class RealCell:
             self._eye, self._size = read_eye(Path(config.calibration).expanduser())
         view = Camera.framing(config.extent, elevation=ELEVATION)
         self._overhead = Overhead(view, config.centre, float(np.radians(config.turn_deg)))
-        self._camera: DepthCamera = create("cameras", config.camera.name, config.camera.params)
-        self._robot: Robot = create("robots", config.robot.name, config.robot.params)
+        self.camera: DepthCamera = create("cameras", config.camera.name, config.camera.params)
+        self.robot: Robot = create("robots", config.robot.name, config.robot.params)
 
     def reset(self, garment: Garment, seed: int) -> Observation:
         """Have somebody lay the garment out, park the arms and take the first picture; ``seed`` decides nothing."""
-        self._camera.connect()
-        self._robot.connect()
+        self.camera.connect()
+        self.robot.connect()
         if not self.config.dry_run:
-            if self.config.confirm != "never":
-                agreed(
-                    f"Lay the {garment.kind} flat in the square of {self.config.extent:g} m around "
-                    f"{self.config.centre} and step back: the hands open, and the arms go to where they wait."
-                )
-            self._moving(self._robot.park)
+            self.park(
+                f"Lay the {garment.kind} flat in the square of {self.config.extent:g} m around "
+                f"{self.config.centre} and step back: the hands open, and the arms go to where they wait."
+            )
         seen = self.observe()
         self._refuse_a_table_elsewhere(seen)
         return seen
 
+    def park(self, what: str) -> None:
+        """Open the hands and bring the arms to where they wait, once a person has agreed to what they are told.
+
+        Raises:
+            RobotError: if nobody agrees, or the arms fail; they are stopped then.
+        """
+        if self.config.confirm != "never":
+            agreed(what)
+        self._moving(self.robot.park)
+
     def observe(self) -> Observation:
         """Look, averaging so many pictures."""
-        frame = self._camera.get_rgbd(self.config.frames)
+        return self.seen(self.camera.get_rgbd(self.config.frames))
+
+    def seen(self, frame: RgbdFrame) -> Observation:
+        """What the camera measured, as seen from above. Raises RobotError if it is not known where the camera is."""
         height, width = frame.depth.shape
         if self._size is not None and self._size != (width, height):
             raise RobotError(
@@ -126,7 +137,7 @@ class RealCell:
             picks, places = self._located(action, seen)
         except GroundingError as error:
             return self._left_out(str(error))
-        plan = self._robot.plan(picks, places)
+        plan = self.robot.plan(picks, places)
         if isinstance(plan, Infeasible):
             return self._left_out(plan.reason)
         told = ", ".join(
@@ -143,7 +154,7 @@ class RealCell:
             agreed(f"Next fold, {plan.mode}, {plan.duration:.0f} s: {told}.")
             if _differs(seen, self.observe()):
                 return self._left_out("the picture changed while you were asked, so that the plan is of no use")
-        self._moving(lambda: self._robot.execute(plan))
+        self._moving(lambda: self.robot.execute(plan))
         return self.observe()
 
     def state(self) -> SimState:
@@ -157,9 +168,9 @@ class RealCell:
     def close(self) -> None:
         """Stop and release the arms and the camera."""
         try:
-            self._robot.close()
+            self.robot.close()
         finally:
-            self._camera.close()
+            self.camera.close()
 
     def _located(self, action: Action, seen: Observation) -> tuple[Floats, Floats]:
         """Where the fingers close and where they let go in the robot's world [m], shape (arms, 3) each."""
@@ -175,12 +186,7 @@ class RealCell:
 
     def _refuse_a_table_elsewhere(self, seen: Observation) -> None:
         """Raises RobotError if the table is not measured where the robot's world has it."""
-        camera = seen.camera
-        across, down = camera.width - 1, camera.height - 1
-        places = np.array(
-            [[1.0, x, y] for x, y in ((across / 2, down / 2), (0, 0), (across, 0), (0, down), (across, down))]
-        )
-        heights = camera.elevation - places @ Surface.of(seen.depth).table
+        heights = table_heights(seen)
         worst = float(heights[np.argmax(np.abs(heights))])
         if abs(worst) > LEVEL:
             raise RobotError(
@@ -196,12 +202,12 @@ class RealCell:
             viz.save(viz.overlay(seen, action=action, zoom=2.0), _place(self.config.picture))
             print(f"the next fold is drawn in {self.config.picture}", file=sys.stderr)
         if self.config.film is not None:
-            if not isinstance(self._robot, PybulletArms) or not isinstance(plan, FoldPlan):
+            if not isinstance(self.robot, PybulletArms) or not isinstance(plan, FoldPlan):
                 raise RobotError(
                     f"the robot {self.config.robot.name!r} can't show itself; leave film out, or use one that plans in "
                     "PyBullet"
                 )
-            viz.gif(list(self._robot.film(plan)), _place(self.config.film), fps=4)
+            viz.gif(list(self.robot.film(plan)), _place(self.config.film), fps=4)
             print(f"the arms are shown doing it in {self.config.film}", file=sys.stderr)
 
     def _left_out(self, reason: str) -> Observation:
@@ -214,8 +220,18 @@ class RealCell:
             with endings_raise():
                 motion()
         except BaseException:
-            self._robot.stop()
+            self.robot.stop()
             raise
+
+
+def table_heights(seen: Observation) -> Floats:
+    """How high the table is measured at the view's middle and corners [m], shape (5,)."""
+    camera = seen.camera
+    across, down = camera.width - 1, camera.height - 1
+    places = np.array(
+        [[1.0, x, y] for x, y in ((across / 2, down / 2), (0, 0), (across, 0), (0, down), (across, down))]
+    )
+    return camera.elevation - places @ Surface.of(seen.depth).table
 
 
 def _place(path: str) -> Path:
