@@ -401,7 +401,8 @@ def _options():
 def cases():
     """All of them."""
     makers = (
-        _experiments, _studies, _suites, _meshes, _outlines, _pictures, _sheets, _cassettes, _calibrations, _cells, _weights,
+        _experiments, _studies, _suites, _meshes, _outlines, _pictures, _sheets, _cassettes,
+        _calibrations, _cells, _weights,
         _data, _runs, _options,
     )  # fmt: skip
     return [case for maker in makers for case in maker()]
