@@ -2,6 +2,17 @@
 
 from polyfold.plugins.hookspecs import hookimpl
 
+TORCH = ("polyfold[torch]",)
+
+LEARNED = (
+    ("csam+caso", "coupled:CoupledActionMap", "the best point of a learned map, the second pick by caso"),
+    ("vertex-learned", "coupled:VertexLearned", "the best polygon vertex by the learned map, then caso"),
+    ("1sam", "learned:OneActionMap", "one arm at the best point of a learned map"),
+    ("2sam", "learned:TwoActionMaps", "two arms at the best points of two learned maps"),
+    ("pair+caso", "coupled:CoupledPairValue", "the best point with its partner by a learned joint value"),
+    ("pair", "coupled:PairValue", "the two points with the best learned joint value"),
+)
+
 
 @hookimpl
 def register_policies(register):
@@ -11,13 +22,8 @@ def register_policies(register):
     register("caso", f"{plain}:Caso", "a random contour point, the second pick by conditional affordance optimisation")
     register("vertex-random", f"{plain}:VertexRandom", "a random polygon vertex, the second pick by caso")
     register("farthest", f"{plain}:Farthest", "the point farthest from the line, the second pick by caso")
-    coupled, learned = "polyfold_fgpnp.policies.coupled", "polyfold_fgpnp.policies.learned"
-    register("csam+caso", f"{coupled}:CoupledActionMap", "the best point of a learned map, the second pick by caso")
-    register("vertex-learned", f"{coupled}:VertexLearned", "the best polygon vertex by the learned map, then caso")
-    register("1sam", f"{learned}:OneActionMap", "one arm at the best point of a learned map")
-    register("2sam", f"{learned}:TwoActionMaps", "two arms at the best points of two learned maps")
-    register("pair+caso", f"{coupled}:CoupledPairValue", "the best point with its partner by a learned joint value")
-    register("pair", f"{coupled}:PairValue", "the two points with the best learned joint value")
+    for name, target, summary in LEARNED:
+        register(name, f"polyfold_fgpnp.policies.{target}", summary, TORCH)
 
 
 @hookimpl
@@ -26,5 +32,5 @@ def register_commands(register):
     register(
         "collect", "polyfold_fgpnp.data.collect:Collect", "fold at random in simulation and record how it came out"
     )
-    register("train", "polyfold_fgpnp.training.command:Train", "learn a value network from random folds")
-    register("maps", "polyfold_fgpnp.studies.maps:Maps", "draw learned spatial action maps over garments")
+    register("train", "polyfold_fgpnp.training.command:Train", "learn a value network from random folds", TORCH)
+    register("maps", "polyfold_fgpnp.studies.maps:Maps", "draw learned spatial action maps over garments", TORCH)

@@ -6,7 +6,8 @@ from polyfold.plugins.hookspecs import hookimpl
 @hookimpl
 def register_llms(register):
     """Register the backends."""
-    register("litellm", "polyfold_llms.litellm_backend:LiteLLM", "litellm:ROUTE/MODEL, any provider or local server")
+    backend = "polyfold_llms.litellm_backend:LiteLLM"
+    register("litellm", backend, "litellm:ROUTE/MODEL, any provider or local server", ("polyfold[llm]",))
     register("record", "polyfold_llms.recording:RecordLLM", "record:CASSETTE, another backend, recorded")
     register("replay", "polyfold_llms.recording:ReplayLLM", "replay:CASSETTE, what was recorded; no key, no network")
 

@@ -20,4 +20,5 @@ def register_commands(register):
         "train-language",
         "polyfold_offline.training.command:TrainLanguage",
         "learn to read sentences from written ones",
+        ("polyfold[torch]",),
     )

@@ -6,23 +6,25 @@ from polyfold.plugins.hookspecs import hookimpl
 @hookimpl
 def register_robots(register):
     """Register the arms, simulated and real."""
-    register("pybullet", "polyfold_pybullet.arms:PybulletArms", "two Pandas, a YuMi or arms by URDF, in PyBullet")
+    simulated = "polyfold_pybullet.arms:PybulletArms"
+    register("pybullet", simulated, "two Pandas, a YuMi or arms by URDF, in PyBullet", ("polyfold[robot]",))
     drivers = "polyfold_pybullet.drivers"
-    register("abb", f"{drivers}.abb:AbbArms", "two ABB arms at one IRC5, such as a YuMi", ("abb-motion-program-exec",))
-    register("ur", f"{drivers}.ur:UrArms", "two UR arms with Robotiq hands, a controller each", ("ur_rtde",))
+    register("abb", f"{drivers}.abb:AbbArms", "two ABB arms at one IRC5, such as a YuMi", ("polyfold[abb]",))
+    register("ur", f"{drivers}.ur:UrArms", "two UR arms with Robotiq hands, a controller each", ("polyfold[ur]",))
 
 
 @hookimpl
 def register_cameras(register):
     """Register the cameras."""
     realsense = "polyfold_pybullet.drivers.realsense:RealSense"
-    register("realsense", realsense, "an Intel RealSense, or a recording of one", ("pyrealsense2",))
+    register("realsense", realsense, "an Intel RealSense, or a recording of one", ("polyfold[realsense]",))
 
 
 @hookimpl
 def register_simulators(register):
     """Register the cell, in simulation and for real."""
-    register("pybullet", "polyfold_pybullet.simulator:CellSimulator", "a robot cell: two arms and a depth camera")
+    cell = "polyfold_pybullet.simulator:CellSimulator"
+    register("pybullet", cell, "a robot cell: two arms and a depth camera", ("polyfold[robot]",))
     register("real-cell", "polyfold_pybullet.real.table:RealCell", "real cloth: your camera, your arms, your consent")
 
 

@@ -9,7 +9,7 @@ import argparse
 import os
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any, NoReturn, Protocol, TextIO
 
@@ -116,13 +116,25 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
         if verb == chosen:
             implementation = _implementation(module)
             implementation.configure(subparser)
-            subparser.set_defaults(run=implementation.run)
+            subparser.set_defaults(run=_complete(verb, implementation.run))
     return parser
 
 
 def _plugin_verbs() -> dict[str, tuple[str, str]]:
     found = catalog().components["commands"]
     return {name: (str(entries[0].target), entries[0].summary) for name, entries in sorted(found.items())}
+
+
+def _complete(verb: str, run: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Namespace], int]:
+    """What a verb does, once it is said what a plugin's verb can't do without; its help is there all the same."""
+    if verb in VERBS:
+        return run
+
+    def checked(arguments: argparse.Namespace) -> int:
+        catalog().components["commands"][verb][0].refuse_if_incomplete(f"polyfold {verb}")
+        return run(arguments)
+
+    return checked
 
 
 def _implementation(target: str) -> Verb:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import shlex
 from typing import Any
 
 from polyfold import plugins
@@ -28,7 +29,11 @@ def run(arguments: argparse.Namespace) -> int:
             continue
         print(kind)
         for component in components:
-            missing = f"  [needs: pip install {' '.join(component['missing'])}]" if component["missing"] else ""
+            missing = (
+                f"  [needs: pip install {' '.join(map(shlex.quote, component['missing']))}]"
+                if component["missing"]
+                else ""
+            )
             source = f"  ({component['distribution']})" if component["distribution"] != "polyfold" else ""
             print(f"  {component['name']:<16} {component['summary']}{source}{missing}")
     print("plugins")

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections import defaultdict
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, distribution
+from typing import TYPE_CHECKING
 
 from polyfold.errors import PluginError
+
+if TYPE_CHECKING:
+    from packaging.requirements import Requirement
 
 _NAME = re.compile(r"[a-z0-9][a-z0-9+_-]{0,49}")
 
@@ -56,15 +62,40 @@ class Component:
         """Requirements in ``needs`` that no installed distribution meets."""
         return [package for package in self.needs if not _installed(package)]
 
+    def refuse_if_incomplete(self, what: str) -> None:
+        """Raises PluginError with the pip command if ``what``, which this is, can't do without something missing."""
+        if missing := self.missing_packages():
+            raise PluginError(
+                f"{what} needs {', '.join(missing)}; install with: pip install {' '.join(map(shlex.quote, missing))}"
+            )
+
 
 def _installed(package: str) -> bool:
+    """Whether a requirement is met, with all that its extras ask for: ``polyfold[torch]`` is, once torch is there."""
     from packaging.requirements import InvalidRequirement, Requirement
 
     try:
         wanted = Requirement(package)
-        return wanted.specifier.contains(distribution(wanted.name).version, prereleases=True)
+        found = distribution(wanted.name)
+        if not wanted.specifier.contains(found.version, prereleases=True):
+            return False
+        listed = [Requirement(text) for text in found.requires or ()]
     except (PackageNotFoundError, InvalidRequirement):
         return False
+    return all(
+        _installed(str(_without_marker(requirement)))
+        for extra in wanted.extras
+        for requirement in listed
+        if requirement.marker is not None
+        and requirement.marker.evaluate({"extra": extra})
+        and not requirement.marker.evaluate({"extra": ""})
+    )
+
+
+def _without_marker(requirement: Requirement) -> Requirement:
+    plain = copy(requirement)
+    plain.marker = None
+    return plain
 
 
 def refuse_reserved(kind: str, name: str) -> None:

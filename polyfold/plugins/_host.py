@@ -7,7 +7,6 @@ plugin is recorded with its distribution, version and traceback, warned of once,
 from __future__ import annotations
 
 import importlib
-import shlex
 import traceback
 import warnings
 from collections.abc import Mapping, Sequence
@@ -142,11 +141,7 @@ class Host:
                 f"the {singular(kind)} {name!r} is registered by {owners}; "
                 f"uninstall one of them or disable one with POLYFOLD_DISABLE={entries[-1].plugin.to_disable}"
             )
-        if missing := entries[0].missing_packages():
-            raise PluginError(
-                f"the {singular(kind)} {name!r} needs {', '.join(missing)}; "
-                f"install with: pip install {' '.join(map(shlex.quote, missing))}"
-            )
+        entries[0].refuse_if_incomplete(f"the {singular(kind)} {name!r}")
         return entries[0]
 
     def _unknown(self, kind: str, name: str) -> str:

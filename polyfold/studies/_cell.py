@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import resource
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -180,8 +180,18 @@ def _record(study: Study, cell: Cell, judged: _Judged, started: datetime) -> Stu
         success=success,
         cause=None if success[study.criteria[0]] else _cause(judged),
         reference_idle=comparison.nearest is not None and comparison.nearest.is_idle(),
-        peak_memory_mb=round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024),
+        peak_memory_mb=_peak_memory_mb(),
     )
+
+
+def _peak_memory_mb() -> int | None:
+    """The largest memory that this process had so far [MiB]; None on Windows, where Python can't tell."""
+    try:
+        import resource
+    except ModuleNotFoundError:
+        return None
+    a_mebibyte = 2**20 if sys.platform == "darwin" else 2**10
+    return round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / a_mebibyte)
 
 
 def _is_unseen(study: Study, cell: Cell) -> bool | None:

@@ -260,6 +260,28 @@ def test_a_requirement_that_is_installed_in_another_version_is_missing():
     assert host.find("policies", "usual").name == "usual"
 
 
+def test_an_extra_is_missing_until_all_that_it_asks_for_is_installed(tmp_path, monkeypatch):
+    there = tmp_path / "sorter-1.0.dist-info"
+    there.mkdir()
+    (there / "METADATA").write_text(
+        "Metadata-Version: 2.1\nName: sorter\nVersion: 1.0\nProvides-Extra: fast\nProvides-Extra: all\n"
+        "Requires-Dist: numpy\nRequires-Dist: numpy>=99; extra == 'fast'\nRequires-Dist: sorter[fast]; extra == 'all'\n"
+        "Requires-Dist: nobody-has-this; python_version < '3' and extra == 'fast'\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    host = plugins.Host()
+    for name, extra in (("plain", ""), ("fast", "[fast]"), ("whole", "[all]")):
+        host.register("policies", name, Component, needs=(f"sorter{extra}",))
+    assert host.find("policies", "plain").name == "plain"
+    for name, extra in (("fast", "fast"), ("whole", "all")):
+        with pytest.raises(
+            PluginError, match=rf"needs sorter\[{extra}\]; install with: pip install 'sorter\[{extra}\]'"
+        ):
+            host.find("policies", name)
+    (there / "METADATA").write_text((there / "METADATA").read_text().replace("numpy>=99", "numpy>=1"))
+    assert host.find("policies", "whole").name == "whole"
+
+
 @pytest.mark.filterwarnings("ignore:plugin 'unhashable'")
 def test_a_plugin_may_be_any_object(installed):
     installed(

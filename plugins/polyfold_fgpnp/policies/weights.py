@@ -101,8 +101,11 @@ def load_weights(path: str | Path, *variants: str) -> tuple[ValueNetwork, Proven
         ConfigError: if there is no such file, it is no such file, its hash does not match, or it is another variant.
     """
     from safetensors import SafetensorError, safe_open
-    from torch import channels_last
 
+    try:
+        from torch import channels_last
+    except ModuleNotFoundError as error:
+        raise ConfigError("networks that value picks need torch; pip install 'polyfold[torch]'") from error
     from polyfold_fgpnp.policies.networks import NetworkConfig, ValueNetwork
 
     if not Path(path).exists():

@@ -5,12 +5,20 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
+from filelock import FileLock
+
 from polyfold.errors import ConfigError
 from polyfold.logs._disk.files import write_atomically
+
+try:
+    import fcntl
+except ModuleNotFoundError:  # Windows
+    fcntl = None
 
 _BLOCK = 65_536
 
@@ -52,8 +60,7 @@ class JsonLines:
             raise ConfigError(f"a record of {len(line)} bytes is too long for {self.path}; make it shorter")
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            with self.path.open("a+b") as file:
-                _lock(file)
+            with self._alone("a+b") as file:
                 _drop_half_written_line(file)
                 file.write(line)
                 file.flush()
@@ -131,9 +138,19 @@ class JsonLines:
     def repair(self) -> None:
         """Remove a half-written last line, which a kill has left."""
         if self.path.exists():
-            with self.path.open("r+b") as file:
-                _lock(file)
+            with self._alone("r+b") as file:
                 _drop_half_written_line(file)
+
+    @contextmanager
+    def _alone(self, mode: str) -> Iterator[BinaryIO]:
+        """The file, opened, while no other process writes to it; Windows locks a file beside it instead of itself."""
+        with ExitStack() as held:
+            if fcntl is None:
+                held.enter_context(FileLock(f"{self.path}.lock"))
+            file: BinaryIO = held.enter_context(self.path.open(mode))  # type: ignore[arg-type]
+            if fcntl is not None:
+                fcntl.flock(file, fcntl.LOCK_EX)
+            yield file
 
 
 def _encoded(content: Mapping[str, Any]) -> bytes:
@@ -142,15 +159,6 @@ def _encoded(content: Mapping[str, Any]) -> bytes:
         return json.dumps(content, ensure_ascii=False).encode()
     except UnicodeEncodeError:
         return json.dumps(content).encode()
-
-
-def _lock(file: BinaryIO) -> None:
-    """Wait until no other process writes; closing the file lets the next one in. Windows has no such lock."""
-    try:
-        import fcntl
-    except ModuleNotFoundError:
-        return
-    fcntl.flock(file, fcntl.LOCK_EX)
 
 
 def _drop_half_written_line(file: BinaryIO) -> None:
