@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import closing
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager, nullcontext
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -21,7 +21,8 @@ from polyfold.logs._writing import fold_record, transcript_lines
 from polyfold.plugins.interfaces import RecordsMotion, Simulator
 from polyfold.rollout import run_episode
 from polyfold.rollout._sentences import plain
-from polyfold.types import Episode, Observation
+from polyfold.types import Episode, Step
+from polyfold.viz._film import Moment, film
 
 GIF_RATE = 12.0
 """Frames of the animation per simulated second."""
@@ -64,18 +65,18 @@ def fold(
         garment = named_garment(garment, seed=seed, experiment=experiment)
     elif experiment.fabric != ComponentSpec(name=USUAL):
         garment = replace(garment, fabric=plugins.make_fabric(experiment.fabric, garment.kind))
-    frames: list[Observation] | None = None if out is None else []
+    recorded = None if out is None else _Film()
     folder = None if out is None else _prepare(Path(out))
     if observer is not None:
         plugins.observe(observer)
     started = datetime.now(UTC)
     try:
-        episode = attempt(instruction, garment, seed, experiment, task=task, frames=frames)
+        episode = attempt(instruction, garment, seed, experiment, task=task, film=recorded)
     finally:
         if observer is not None:
             plugins.unobserve(observer)
     if folder is not None:
-        save(episode, folder, frames or [], started)
+        save(episode, folder, recorded.moments if recorded else (), started)
     if episode.error is not None:
         raise episode.error
     return episode
@@ -88,35 +89,55 @@ def attempt(
     experiment: Experiment,
     *,
     task: str | None = None,
-    frames: list[Observation] | None = None,
+    film: _Film | None = None,
 ) -> Episode:
     """Run and judge one episode; a failed one is returned with its ``failure`` instead of raised.
 
     Args:
-        frames: if given, pictures of the motion are appended (for simulators that can ``record``).
+        film: if given, it is told how the cloth moves (by simulators that can ``record``).
     """
     goal = None if task is None else find_task(task, garment.kind)
-    with closing(plugins.create_chosen(experiment, "simulator")) as simulator:
-        if frames is not None:
-            _record_motion(simulator, frames)
+    with (
+        closing(plugins.create_chosen(experiment, "simulator")) as simulator,
+        nullcontext() if film is None else film.of(simulator),
+    ):
         return run_episode(
             experiment, garment, instruction, seed, simulator, task=goal, judge=lambda episode: judge(episode, task)
         )
 
 
-def _record_motion(simulator: Simulator, frames: list[Observation]) -> None:
-    """Have pictures of the motion appended, if the simulator can take them."""
-    if isinstance(simulator, RecordsMotion):
-        simulator.record(frames.append, GIF_RATE)
+class _Film:
+    """What moved during an episode, in order."""
+
+    def __init__(self) -> None:
+        self.moments: list[Moment] = []
+        self._fold = 0
+
+    @contextmanager
+    def of(self, simulator: Simulator) -> Iterator[None]:
+        """Keep what a simulator shows of its motion, if it can, and count the folds meanwhile."""
+        if not isinstance(simulator, RecordsMotion):
+            yield
+            return
+        simulator.record(lambda seen: self.moments.append(Moment(seen, simulator.state(), self._fold)), GIF_RATE)
+        plugins.observe(self)
+        try:
+            yield
+        finally:
+            plugins.unobserve(self)
+
+    def on_step(self, step: Step) -> None:
+        """A fold is over."""
+        self._fold = step.index + 1
 
 
-def save(episode: Episode, folder: Path, frames: Sequence[Observation] = (), started: datetime | None = None) -> None:
+def save(episode: Episode, folder: Path, moments: Sequence[Moment] = (), started: datetime | None = None) -> None:
     """Write ``episode.json``, ``transcript.jsonl``, ``filmstrip.png`` and, if there was motion, ``fold.gif``.
 
     Args:
         episode: what happened.
         folder: where to.
-        frames: pictures of the motion.
+        moments: how the cloth moved.
         started: when it began, in UTC.
     """
     record = fold_record(episode, started, datetime.now(UTC)).model_copy(update={"out": str(folder)})
@@ -124,9 +145,8 @@ def save(episode: Episode, folder: Path, frames: Sequence[Observation] = (), sta
     write_atomically(folder / "transcript.jsonl", transcript_lines(episode.calls))
     viz.save(viz.filmstrip_of(episode), folder / "filmstrip.png")
     (folder / "fold.gif").unlink(missing_ok=True)  # an earlier fold's
-    if frames:
-        motion = [episode.start.rgb, *(frame.rgb for frame in frames), episode.final.rgb]
-        viz.gif(motion, folder / "fold.gif", fps=GIF_RATE)
+    if moments:
+        film(episode, moments, folder / "fold.gif", GIF_RATE)
 
 
 def _prepare(folder: Path) -> Path:

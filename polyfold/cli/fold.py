@@ -64,36 +64,11 @@ class Printer:
         )
         times = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
         number = f"{step.index + 1} (again)" if step.retry else f"{step.index + 1}"
-        hold = f"{_empty_grips(step)}{_stopped_short(step)}{_slipped(step)}"
-        self._flush(f"  fold {number}: {where}, {step.action.arms} arm(s){hold}; {times}")
+        self._flush(f"  fold {number}: {where}, {step.in_words()}; {times}")
 
     def _flush(self, line: str) -> None:
         print(line)
         sys.stdout.flush()
-
-
-def _empty_grips(step: Step) -> str:
-    picks = enumerate(zip(step.after.grasped or (), step.action.picks, strict=False), 1)
-    empty = [f"arm {arm} at ({pick[0]:.0f}, {pick[1]:.0f})" for arm, (plies, pick) in picks if plies == 0]
-    return f", no cloth in the grip of {' and '.join(empty)}" if empty else ""
-
-
-def _stopped_short(step: Step) -> str:
-    short = [f"arm {arm} {1000 * way:.0f} mm" for arm, way in enumerate(step.after.short or (), 1) if way >= _SHORT]
-    return f", the cloth reaches no farther: {' and '.join(short)} short of its place" if short else ""
-
-
-_SHORT = 0.005
-"""Stops that are nearer to their places than this are not worth a word [m]."""
-
-
-def _slipped(step: Step) -> str:
-    lost = [f"arm {arm}" for arm, share in enumerate(step.after.slipped or (), 1) if share >= _LOST]
-    return f", the cloth slipped out of the grip of {' and '.join(lost)}" if lost else ""
-
-
-_LOST = 0.5
-"""An arm has lost the cloth if this share of what it took slipped out of its grip."""
 
 
 def _how_to_name(fidelity: Fidelity) -> str:

@@ -1,4 +1,4 @@
-"""``polyfold garments``: a picture sheet of seeded garments, as the camera sees them, and what they are made of."""
+"""``polyfold garments``: a picture sheet of seeded garments as they lie, and what they are made of."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Draw the sheet."""
     from polyfold import viz
+    from polyfold.viz._draw._cloth import cloth_picture
 
     experiment = experiment_from(arguments)
     simulator = plugins.create_chosen(experiment, "simulator")
@@ -31,7 +32,8 @@ def run(arguments: argparse.Namespace) -> int:
     for kind in kinds:
         for seed in range(arguments.seed, arguments.seed + arguments.count):
             garment = polyfold.garment(kind, seed, experiment=experiment)
-            pictures[garment.name] = simulator.reset(garment, seed).rgb
+            seen, state = simulator.reset(garment, seed), simulator.state()
+            pictures[garment.name] = cloth_picture(state, garment, zoom=1.0) if state.known else seen.rgb
     simulator.close()
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
     viz.garment_sheet(pictures, columns=arguments.count, path=arguments.out)

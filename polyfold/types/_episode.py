@@ -38,6 +38,12 @@ class EpisodeStart:
     seconds: float
 
 
+SHORT = 0.005
+"""Stops that are nearer to their places than this are not worth a word [m]."""
+LOST = 0.5
+"""An arm has lost the cloth if this share of what it took slipped out of its grip."""
+
+
 @dataclass(frozen=True, eq=False)
 class Step:
     """One executed fold.
@@ -63,6 +69,25 @@ class Step:
     after: SimState
     retry: bool = False
     action_map: Callable[[], ActionMap] | None = None
+
+    def in_words(self) -> str:
+        """How many arms folded, and what went wrong with their grips, as far as the simulator says."""
+        told = ["one arm" if self.action.arms == 1 else "two arms"]
+        picks = list(enumerate(self.action.picks, 1))
+        empty = [
+            f"arm {arm} at ({x:.0f}, {y:.0f})"
+            for (arm, (x, y)), plies in zip(picks, self.after.grasped or (), strict=False)
+            if plies == 0
+        ]
+        short = [f"arm {arm} {1000 * way:.0f} mm" for arm, way in enumerate(self.after.short or (), 1) if way >= SHORT]
+        lost = [f"arm {arm}" for arm, share in enumerate(self.after.slipped or (), 1) if share >= LOST]
+        if empty:
+            told.append(f"no cloth in the grip of {' and '.join(empty)}")
+        if short:
+            told.append(f"the cloth reaches no farther: {' and '.join(short)} short of its place")
+        if lost:
+            told.append(f"the cloth slipped out of the grip of {' and '.join(lost)}")
+        return ", ".join(told)
 
 
 @dataclass(frozen=True)

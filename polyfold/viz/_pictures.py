@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from polyfold.errors import PlanError
 from polyfold.geometry import contour_of
 from polyfold.tasks._ideal import fold_ideally
-from polyfold.types import ActionMap, Episode, Step
+from polyfold.types import ActionMap, Episode, SimState, Step
 from polyfold.types._views import makes
+from polyfold.viz._draw._cloth import cloth_picture, sides_of
 from polyfold.viz._draw._filmstrips import Frame, filmstrip
 from polyfold.viz._draw._overlays import overlay
 from polyfold.viz._draw._saving import png
@@ -21,19 +22,29 @@ from polyfold.viz._draw._saving import png
 @makes(Episode, "filmstrip")
 def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
     """One panel per fold, then the result beside the ideal, uint8, shape (H, W, 3)."""
+    result = _shown(episode, episode.final_state)
+    before = [episode.initial_state, *(step.after for step in episode.steps)]
     return filmstrip(
-        [_frame(step) for step in episode.steps],
+        [_frame(step, _shown(episode, state)) for step, state in zip(episode.steps, before, strict=False)],
         episode.final.rgb,
-        heading=f"{episode.garment.name}: {episode.instruction}",
+        heading=f"{episode.instruction} ({episode.garment.name})",
         result_caption=result_caption(episode),
         ideal_outline=_ideal_outline(episode),
+        result_shown=result,
+        sides=() if result is None else sides_of(episode.garment),
     )
+
+
+def _shown(episode: Episode, state: SimState) -> NDArray[np.uint8] | None:
+    """A state drawn for people; None where it is not known, or an agent may have put the cloth back meanwhile."""
+    return None if episode.privileged or not state.known else cloth_picture(state, episode.garment)
 
 
 @makes(Episode, "result")
 def result_of(episode: Episode) -> NDArray[np.uint8]:
     """The last picture with the ideal outline dashed over it, uint8, shape (H, W, 3)."""
-    return overlay(episode.final, outline=_ideal_outline(episode))
+    shown = _shown(episode, episode.final_state)
+    return overlay(episode.final, outline=_ideal_outline(episode), shown=shown)
 
 
 def _ideal_outline(episode: Episode) -> NDArray[np.float64] | None:
@@ -42,12 +53,11 @@ def _ideal_outline(episode: Episode) -> NDArray[np.float64] | None:
     return contour_of(fold_ideally(episode.initial_state, episode.garment, episode.ideal_lines).mask)
 
 
-def _frame(step: Step) -> Frame:
+def _frame(step: Step, shown: NDArray[np.uint8] | None) -> Frame:
     title = step.subgoal.text if step.subgoal else f"fold {step.index + 1}"
     title = f"again: {title}" if step.retry else title
-    caption = ", ".join(f"{stage} {seconds:.2f} s" for stage, seconds in step.seconds.items())
     seen = step.observation.rgb
-    return Frame(seen, step.scene, step.fold_line, step.action, title, caption, action_map_of(step))
+    return Frame(seen, step.scene, step.fold_line, step.action, title, step.in_words(), action_map_of(step), shown)
 
 
 def action_map_of(step: Step) -> ActionMap | None:

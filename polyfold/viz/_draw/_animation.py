@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,13 @@ Image = NDArray[np.uint8]
 
 
 def gif(
-    frames: Sequence[Image], path: str | Path, fps: float = 12.0, *, hold_s: float = 1.5, max_bytes: int = 3_000_000
+    frames: Sequence[Image],
+    path: str | Path,
+    fps: float = 12.0,
+    *,
+    hold_s: float = 1.5,
+    holds: Mapping[int, float] | None = None,
+    max_bytes: int = 3_000_000,
 ) -> Path:
     """Write frames as an endless GIF with one palette for all; the last frame is held before it starts again.
 
@@ -29,6 +35,7 @@ def gif(
         path: file to write; its folder is made if need be.
         fps: frames per second; GIF rounds the duration to 10 ms.
         hold_s: how long the last frame stays [s].
+        holds: how long others stay, by their number from 0, that stay longer than the rest [s].
         max_bytes: largest file allowed.
 
     Raises:
@@ -41,7 +48,8 @@ def gif(
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     durations = [max(20, round(100 / fps) * 10)] * len(frames)
-    durations[-1] = round(hold_s * 1000)
+    for number, seconds in {**(holds or {}), len(frames) - 1: hold_s}.items():
+        durations[number] = round(seconds * 1000)
     while True:
         encoded = _encoded(frames, durations)
         height, width = frames[0].shape[:2]

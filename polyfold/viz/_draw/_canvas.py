@@ -20,17 +20,18 @@ class Canvas:
     Args:
         rgb: the picture, uint8, shape (H, W, 3).
         zoom: size of the result relative to the picture.
+        shown: what is shown in its place: the same view at another size.
     """
 
     OVERSAMPLE = 4
 
-    def __init__(self, rgb: Image, zoom: float = 1.0) -> None:
+    def __init__(self, rgb: Image, zoom: float = 1.0, shown: Image | None = None) -> None:
         from PIL import Image as Pillow
 
         height, width = rgb.shape[:2]
         size = (round(width * zoom), round(height * zoom))
-        picture = Pillow.fromarray(np.ascontiguousarray(rgb))
-        if size != (width, height):
+        picture = Pillow.fromarray(np.ascontiguousarray(rgb if shown is None else shown))
+        if size != picture.size:
             picture = picture.resize(size, Pillow.Resampling.LANCZOS)
         self._image = picture.resize((size[0] * self.OVERSAMPLE, size[1] * self.OVERSAMPLE), Pillow.Resampling.NEAREST)
         self._scale = np.array(size) / (width, height) * self.OVERSAMPLE

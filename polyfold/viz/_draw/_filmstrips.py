@@ -18,7 +18,7 @@ from polyfold.viz._draw._style import ARMS, FAINT, FOLD_LINE, GOAL, INK, LIFTED,
 
 Image = NDArray[np.uint8]
 
-PANEL, GAP, MARGIN = 330, 26, 26
+PANEL, GAP, MARGIN = 400, 26, 26
 HEADING, TITLE, CAPTION = 24, 17, 15
 
 
@@ -38,6 +38,7 @@ class Frame:
         title: the step in words.
         caption: what stands below, such as the time it took.
         action_map: places to pick and the policy's values, if any.
+        shown: what is shown in the picture's place, the same view at another size.
     """
 
     rgb: Image
@@ -47,6 +48,7 @@ class Frame:
     title: str = ""
     caption: str = ""
     action_map: ActionMap | None = None
+    shown: Image | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +70,8 @@ def filmstrip(
     *,
     result_title: str = "Result",
     columns: int = 5,
+    result_shown: Image | None = None,
+    sides: Sequence[tuple[str, Colour]] = (),
 ) -> Image:
     """Lay out an episode: one panel per step and a last one with the result, and write it if a path is given.
 
@@ -80,14 +84,17 @@ def filmstrip(
         path: PNG to write.
         result_title: what stands over the last panel.
         columns: most panels in a row.
+        result_shown: what is shown in the last picture's place, the same view at another size.
+        sides: what the sides of the cloth are called, and their colours.
 
     Returns:
         The page, uint8, shape (H', W', 3).
     """
     panels = [_step_panel(number, frame) for number, frame in enumerate(frames, start=1)]
-    panels.append(_result_panel(result_rgb, result_title, result_caption, ideal_outline))
+    panels.append(_result_panel(Frame(result_rgb, shown=result_shown), result_title, result_caption, ideal_outline))
     rows = [panels[i : i + columns] for i in range(0, len(panels), columns)]
-    page = _lay_out(rows, heading, _legend(frames, ideal_outline is not None))
+    signs = [("■", name, colour) for name, colour in sides]
+    page = _lay_out(rows, heading, [*signs, *_legend(frames, ideal_outline is not None)])
     if path is not None:
         save(page, path)
     return page
@@ -95,13 +102,21 @@ def filmstrip(
 
 def _step_panel(number: int, frame: Frame) -> _Panel:
     zoom = PANEL / max(frame.rgb.shape[:2])
-    picture = overlay(frame.rgb, frame.scene, frame.fold_line, frame.action, action_map=frame.action_map, zoom=zoom)
+    picture = overlay(
+        frame.rgb,
+        frame.scene,
+        frame.fold_line,
+        frame.action,
+        action_map=frame.action_map,
+        zoom=zoom,
+        shown=frame.shown,
+    )
     title = wrapped(f"{number}. {frame.title}", TITLE, PANEL, bold=True)
     return _Panel(picture, title, wrapped(frame.caption, CAPTION, PANEL, most=2))
 
 
-def _result_panel(rgb: Image, title: str, caption: str, ideal_outline: ArrayLike | None) -> _Panel:
-    picture = overlay(rgb, outline=ideal_outline, zoom=PANEL / max(rgb.shape[:2]))
+def _result_panel(frame: Frame, title: str, caption: str, ideal_outline: ArrayLike | None) -> _Panel:
+    picture = overlay(frame.rgb, outline=ideal_outline, zoom=PANEL / max(frame.rgb.shape[:2]), shown=frame.shown)
     return _Panel(picture, wrapped(title, TITLE, PANEL, bold=True), wrapped(caption, CAPTION, PANEL, most=6))
 
 

@@ -29,6 +29,7 @@ def overlay(
     outline: ArrayLike | None = None,
     action_map: ActionMap | None = None,
     zoom: float = 1.0,
+    shown: Image | None = None,
 ) -> Image:
     """Draw polygon, fold line and picks and places over a picture.
 
@@ -43,11 +44,12 @@ def overlay(
         outline: an outline to compare with, such as the ideal result [px], shape (N, 2); dashed red.
         action_map: places to pick and their values, as a policy's ``action_map`` gives them; see :func:`value_map`.
         zoom: size of the result relative to the picture.
+        shown: what is shown in the picture's place, the same view at another size.
 
     Returns:
         The picture, uint8, shape (zoom H, zoom W, 3); pixels that nothing covers are unchanged at zoom 1.
     """
-    canvas = Canvas(picture.rgb if isinstance(picture, Observation) else picture, zoom)
+    canvas = Canvas(picture.rgb if isinstance(picture, Observation) else picture, zoom, shown)
     if scene is not None and scene.model is not None:
         draw_model(canvas, scene.model)
     if outline is not None:
