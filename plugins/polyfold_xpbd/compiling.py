@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import sys
+import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from threading import Event, Thread
 from typing import Any
+
+LONG = 2.0
+"""Seconds after which it is said that something is being compiled; reading what was kept takes less."""
 
 
 def kept(function: Callable[..., Any]) -> Any:
@@ -27,9 +33,45 @@ def kept(function: Callable[..., Any]) -> Any:
         if "no locator" not in str(error):
             raise
         _mention_no_place()
-        return njit(error_model="numpy")(function)
+        return _announced(njit(error_model="numpy")(function))
     _forgive(dispatcher._cache)  # pyright: ignore[reportAttributeAccessIssue]
+    return _announced(dispatcher)
+
+
+def _announced(dispatcher: Any) -> Any:
+    """Have it said when compiling takes long, so that nobody takes the first fold after an install for a fault."""
+    compiled = dispatcher.compile
+
+    def compile(signature: Any) -> Any:
+        with _patience():
+            return compiled(signature)
+
+    dispatcher.compile = compile
     return dispatcher
+
+
+@contextmanager
+def _patience() -> Iterator[None]:
+    done = Event()
+    thread = Thread(target=_tell, args=(done,), daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
+
+
+def _tell(done: Event) -> None:
+    """Say what takes so long to whoever watches, at a terminal or in a notebook, with the seconds until it is done."""
+    watched = sys.stderr.isatty() or "ipykernel" in sys.modules
+    begun = time.monotonic()
+    if done.wait(LONG) or not watched:
+        return
+    what = "compiling the cloth's kernels for this processor, once after an install"
+    while not done.wait(1.0):
+        print(f"\rpolyfold: {what}: {time.monotonic() - begun:.0f} s", end="", file=sys.stderr, flush=True)
+    print(f"\rpolyfold: {what}: {time.monotonic() - begun:.0f} s", file=sys.stderr, flush=True)
 
 
 @cache

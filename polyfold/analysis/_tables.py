@@ -8,6 +8,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
+from itertools import groupby
+from operator import itemgetter
 
 from polyfold.analysis._intervals import Estimate
 
@@ -96,9 +98,14 @@ class Table:
         return f"<table>{caption}<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
     def latex(self) -> str:
-        """A booktabs tabular."""
-        lines = [f"\\begin{{tabular}}{{ll{'r' * (len(self.headers) - 2)}}}", "\\toprule"]
-        lines += [_latex_row(self.headers), "\\midrule", *map(_latex_row, self.rows), "\\bottomrule", "\\end{tabular}"]
+        """A tabular for booktabs and multirow: what rows below each other share stands in the first column once."""
+        lines = ["% \\usepackage{booktabs, multirow}", f"\\begin{{tabular}}{{ll{'r' * (len(self.headers) - 2)}}}"]
+        lines += ["\\toprule", _latex_row(self.headers), "\\midrule"]
+        for number, (_, rows) in enumerate(groupby(self.rows, itemgetter(0))):
+            shared = list(rows)
+            lines += ["\\midrule"] if number and len(shared) > 1 else []
+            lines += [_latex_row(row, 0 if place else len(shared)) for place, row in enumerate(shared)]
+        lines += ["\\bottomrule", "\\end{tabular}"]
         return "\n".join([*lines, f"% {self.note}"] if self.note else lines)
 
     def csv(self) -> str:
@@ -114,9 +121,17 @@ class Table:
         return self.markdown()
 
 
-def _latex_row(cells: Sequence[str]) -> str:
+def _latex_row(cells: Sequence[str], rows: int = 1) -> str:
+    """A row whose first cell stands for so many rows; 0 if it stands in one above."""
+    first, *others = map(_latex, cells)
+    if rows != 1:
+        first = f"\\multirow{{{rows}}}{{*}}{{{first}}}" if rows else ""
+    return " & ".join([first, *others]) + r" \\"
+
+
+def _latex(text: str) -> str:
     special = {"\\": r"\textbackslash{}", "%": r"\%", "&": r"\&", "_": r"\_", "#": r"\#", "$": r"\$", "−": "$-$"}
-    return " & ".join("".join(special.get(letter, letter) for letter in cell) for cell in cells) + r" \\"
+    return "".join(special.get(letter, letter) for letter in text)
 
 
 def shown(value: Estimate, digits: int = 1, signed: bool = False) -> str:

@@ -24,6 +24,17 @@ def test_what_was_added_is_read(lines):
     assert lines.path.read_text("utf-8").count("\n") == len(RECORDS)
 
 
+def test_where_files_can_not_be_locked_another_one_is(tmp_path, monkeypatch):
+    """As on Windows, which has no flock."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    monkeypatch.setattr("polyfold.logs._disk.json_lines.fcntl", None)
+    path = tmp_path / "log.jsonl"
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda number: JsonLines(path).append({"n": number, "text": "x" * 10_000}), range(40)))
+    assert sorted(record["n"] for record in JsonLines(path).read()) == list(range(40))
+
+
 def test_no_file_holds_nothing(tmp_path):
     lines = JsonLines(tmp_path / "none.jsonl")
     lines.repair()

@@ -346,3 +346,21 @@ def test_the_version_is_told_without_loading_plugins(installed, tmp_path, monkey
         for option in ("--help", "--version")
     }
     assert told == {"--help": "loaded\n", "--version": ""}
+
+
+def test_a_verb_says_what_it_lacks_when_it_is_run_and_helps_before(monkeypatch, capsys, tmp_path):
+    from polyfold.cli import main
+    from polyfold.plugins import _catalog
+
+    installed = _catalog._installed
+    monkeypatch.setattr(_catalog, "_installed", lambda package: package != "polyfold[torch]" and installed(package))
+    with pytest.raises(SystemExit) as ended:
+        main(["train", "--help"])
+    assert ended.value.code == 0
+    capsys.readouterr()
+    assert main(["train", "x.toml", "--out", str(tmp_path / "out")]) == 1
+    assert capsys.readouterr().err == (
+        "polyfold: polyfold train needs polyfold[torch]; install with: pip install 'polyfold[torch]'\n"
+    )
+    assert main(["fold", "fold it", "--garment", "square", "--policy", "csam+caso"]) == 1
+    assert "the policy 'csam+caso' needs polyfold[torch]" in capsys.readouterr().err

@@ -1,5 +1,6 @@
 """Compiled code that can't be kept, or was damaged where it is kept, costs time and nothing else."""
 
+import io
 import warnings
 from importlib import import_module
 
@@ -41,6 +42,22 @@ def test_without_a_place_to_keep_it_code_is_compiled_with_a_warning(double, monk
         compiled = kept(double)
     assert quietly(compiled, 2) == 4
     assert quietly(kept(double), 2) == 4, "it is said once"
+
+
+@pytest.mark.parametrize(("long", "terminal"), [(0.0, True), (60.0, True), (0.0, False)])
+def test_compiling_that_takes_long_is_said_at_a_terminal(double, monkeypatch, long, terminal):
+    told = io.StringIO()
+    told.isatty = lambda: terminal
+    monkeypatch.setattr("sys.stderr", told)
+    monkeypatch.setattr("polyfold_xpbd.compiling.LONG", long)
+    compiled = kept(double)
+    assert compiled(2) == 4
+    said = told.getvalue()
+    assert ("compiling the cloth's kernels for this processor, once after an install" in said) == (
+        long == 0.0 and terminal
+    )
+    assert compiled(3) == 6
+    assert told.getvalue() == said, "and nothing once it is there"
 
 
 def test_where_nothing_is_compiled_functions_stay_as_they_are(double, monkeypatch):
