@@ -21,6 +21,7 @@ def register_policies(register):
     register("affordance-pair", f"{plain}:AffordancePair", "the best pair of picks by affordance, no learning")
     register("caso", f"{plain}:Caso", "a random contour point, the second pick by conditional affordance optimisation")
     register("vertex-random", f"{plain}:VertexRandom", "a random polygon vertex, the second pick by caso")
+    register("one-arm", f"{plain}:OneArm", "one arm between the best pair, no learning")
     register("farthest", f"{plain}:Farthest", "the point farthest from the line, the second pick by caso")
     for name, target, summary in LEARNED:
         register(name, f"polyfold_fgpnp.policies.{target}", summary, TORCH)

@@ -254,6 +254,7 @@ class Goal:
         conversation: the episode's language model.
         subgoal_texts, subgoal_images, goal_image: accurate guidance, for agents that need it; with ``final`` guidance
             the subgoals are the goal alone.
+        subgoal_depths: the same as the depth that a camera would measure [m], float32, shape (H, W) each.
         fold_count: how many folds the task takes; None where that is open.
         fold_lines: the ideal fold lines [px]; privileged.
         ideals: the ideal after each of them, beside the flat garment; privileged.
@@ -268,6 +269,7 @@ class Goal:
     conversation: Conversation | None = None
     subgoal_texts: Sequence[str] | None = None
     subgoal_images: Sequence[NDArray[np.uint8]] | None = None
+    subgoal_depths: Sequence[NDArray[np.float32]] | None = None
     goal_image: NDArray[np.uint8] | None = None
     fold_count: int | None = None
     fold_lines: Sequence[FoldLine] | None = None
@@ -280,9 +282,9 @@ class Goal:
 class Agent(Protocol):
     """Maps instruction and pictures to actions; ``polyfold`` composes grounding, planner, policy and LLM.
 
-    ``requires`` is a subset of {"instruction", "fold_count", "subgoal_texts", "subgoal_images", "goal_image",
-    "fold_lines", "ideals", "state", "simulator"}; the last four are privileged and marked so wherever results are
-    shown.
+    ``requires`` is a subset of {"instruction", "fold_count", "subgoal_texts", "subgoal_images", "subgoal_depths",
+    "goal_image", "fold_lines", "ideals", "state", "simulator"}; the last four are privileged and marked so wherever
+    results are shown.
     """
 
     requires: ClassVar[frozenset[str]]

@@ -15,7 +15,7 @@ from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import Task
 from polyfold.types import Observation, SimState
 
-GUIDED = frozenset({"subgoal_texts", "subgoal_images", "goal_image", "fold_lines", "ideals"})
+GUIDED = frozenset({"subgoal_texts", "subgoal_images", "subgoal_depths", "goal_image", "fold_lines", "ideals"})
 """What is made from a task and the true keypoints."""
 
 PRIVILEGED = frozenset({"fold_lines", "ideals", "state", "simulator"})
@@ -91,6 +91,7 @@ def _guidance(start: Start) -> dict[str, Any]:
     return {
         "subgoal_texts": (start.instruction,) if final else made.subgoal_texts,
         "subgoal_images": (made.goal_image,) if final else made.subgoal_images,
+        "subgoal_depths": made.subgoal_depths[-1:] if final else made.subgoal_depths,
         "goal_image": made.goal_image,
         "fold_lines": made.fold_lines,
         "ideals": made.ideals,

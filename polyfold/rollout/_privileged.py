@@ -29,12 +29,14 @@ class PrivilegedInputs:
         fold_lines: the ideal fold lines [px], one per step.
         subgoal_texts: each step in words.
         subgoal_images: what the garment should look like after each step, uint8, shape (H, W, 3).
+        subgoal_depths: what depth should be measured after each step [m], float32, shape (H, W).
         ideals: the flat garment and what it should be after each step.
     """
 
     fold_lines: tuple[FoldLine, ...]
     subgoal_texts: tuple[str, ...]
     subgoal_images: tuple[Image, ...]
+    subgoal_depths: tuple[NDArray[np.float32], ...]
     ideals: tuple[Outcome, ...]
 
     @property
@@ -56,7 +58,8 @@ def privileged_inputs(task: Task, garment: Garment, flat: SimState, seen: Observ
     folded = fold_step_by_step(flat, garment, lines)
     images = tuple(_drawn(ideal.mask, garment.colours[0], seen.rgb[0, 0]) for ideal in folded)
     ideals = tuple(ideal.outcome(flat, garment.mesh) for ideal in folded)
-    return PrivilegedInputs(tuple(lines), tuple(describe(fold) for fold in task.steps), images, ideals)
+    texts, depths = tuple(describe(fold) for fold in task.steps), tuple(ideal.depth for ideal in folded)
+    return PrivilegedInputs(tuple(lines), texts, images, depths, ideals)
 
 
 def _drawn(mask: NDArray[np.bool_], cloth: tuple[int, int, int], table: Image) -> Image:

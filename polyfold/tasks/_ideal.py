@@ -39,12 +39,14 @@ class IdealFold:
         positions: where each particle ends [m], shape (N, 3).
         layer: how many layers of cloth lie under each particle, shape (N,).
         mask: the silhouette as the camera sees it, bool, shape (H, W).
+        depth: distance along the optical axis as the camera would measure it [m], float32, shape (H, W).
         area: silhouette on the table [px²].
     """
 
     positions: Floats
     layer: NDArray[np.int64]
     mask: NDArray[np.bool_]
+    depth: NDArray[np.float32]
     area: float
 
     def outcome(self, flat: SimState, mesh: Mesh) -> Outcome:
@@ -174,15 +176,21 @@ def _as_seen(stack: _Stack, flat: SimState, thickness: float) -> IdealFold:
     positions = camera.to_world(stack.points)
     positions[:, 2] = floor + thickness * layer
     area = covered_area(shape for sheet in stack.sheets for shape in sheet.shapes)
-    return IdealFold(positions, layer, _silhouette(stack.sheets, camera, floor, thickness), area)
+    mask, heights = _seen(stack.sheets, camera, floor, thickness)
+    return IdealFold(positions, layer, mask, (camera.elevation - heights).astype(np.float32), area)
 
 
-def _silhouette(sheets: Iterable[_Sheet], camera: Camera, floor: float, thickness: float) -> NDArray[np.bool_]:
-    """All sheets at the height of their layer, as the camera sees them, shape (H, W)."""
-    mask = np.zeros((camera.height, camera.width), bool)
+def _seen(
+    sheets: Iterable[_Sheet], camera: Camera, floor: float, thickness: float
+) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
+    """All sheets at the height of their layer, as the camera sees them: where cloth is, and how high [m]."""
+    mask, heights = np.zeros((camera.height, camera.width), bool), np.zeros((camera.height, camera.width), np.float32)
     for sheet in sheets:
+        height = floor + thickness * sheet.layer
         for facet in sheet.facets:
             world = camera.to_world(facet.polygon)
-            world[:, 2] = floor + thickness * sheet.layer
-            mask |= fill_polygon(camera.to_pixels(world), camera.height, camera.width)
-    return mask
+            world[:, 2] = height
+            covered = fill_polygon(camera.to_pixels(world), camera.height, camera.width)
+            mask |= covered
+            np.maximum(heights, np.float32(height), out=heights, where=covered)
+    return mask, heights

@@ -33,7 +33,7 @@ class Spy:
 
 
 class Guided(Spy):
-    requires: ClassVar = frozenset({"subgoal_texts", "subgoal_images", "goal_image"})
+    requires: ClassVar = frozenset({"subgoal_texts", "subgoal_images", "subgoal_depths", "goal_image"})
 
 
 class Privileged(Spy):
@@ -77,7 +77,9 @@ def test_an_agent_is_told_how_thick_a_layer_is_as_a_label_in_the_garment_would(k
 
 def test_steps_guidance_is_one_text_and_picture_per_fold(square):
     run(square, "guided", task="square-triangle-top_left-then-bottom_left")
-    assert set(TOLD) == {"kind", "template", "seed", "subgoal_texts", "subgoal_images", "goal_image"}
+    assert set(TOLD) == {
+        "kind", "template", "seed", "subgoal_texts", "subgoal_images", "subgoal_depths", "goal_image"
+    }  # fmt: skip
     assert TOLD["subgoal_texts"] == (
         "fold top left onto bottom right",
         "fold bottom left onto top right",

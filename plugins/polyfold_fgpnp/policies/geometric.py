@@ -39,6 +39,23 @@ class AffordancePair:
         return to_action(region, *picks, self.config)
 
 
+class OneArm:
+    """One arm, at the contour pixel nearest to the middle of the best pair: a corner, or the middle of the far edge."""
+
+    class Config(PickConfig):
+        """Parameters."""
+
+    def __init__(self, config: Config | None = None) -> None:
+        self.config = config or self.Config()
+
+    def act(self, fold_line: FoldLine, scene: Scene, rng: np.random.Generator) -> Action:
+        """Pick between the best pair; ``rng`` is not used."""
+        region = fold_region(fold_line, scene)
+        first, second = best_pair(region, self.config.gamma)
+        pick = nearest_point(region.points, (first + second) / 2)
+        return to_action(region, pick, pick, self.config)
+
+
 class Caso:
     """A random contour pixel left of the line, and its partner by conditional affordance score optimisation.
 

@@ -1,0 +1,20 @@
+"""Registers the baselines and the verbs that demonstrate folds to them and train them."""
+
+from polyfold.plugins.hookspecs import hookimpl
+
+TORCH = ("polyfold[torch]",)
+
+
+@hookimpl
+def register_agents(register):
+    """Register the agents."""
+    agents = "polyfold_baselines.agents"
+    register("nearest-demo", f"{agents}.nearest:NearestDemo", "copies the closest demonstration")
+    register("foldsformer", f"{agents}.foldsformer:Foldsformer", "goal pictures to heatmaps by attention", TORCH)
+
+
+@hookimpl
+def register_commands(register):
+    """Register the verbs."""
+    register("demos", "polyfold_baselines.demos.command:Demos", "demonstrate folds for baselines to learn from")
+    register("fit", "polyfold_baselines.learning.command:Fit", "train a baseline from demonstrations", TORCH)

@@ -1,0 +1,223 @@
+"""The one training of all rows that learn from demonstrations: a budget, checkpoints, the pick error as it falls."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import torch
+from pydantic import BaseModel, ConfigDict, Field
+from torch import Tensor, nn
+
+from polyfold.errors import ConfigError
+from polyfold.logs import JsonLines, exclusive
+from polyfold_baselines.demos.store import Demos
+from polyfold_baselines.learning import heatmaps
+from polyfold_baselines.learning.examples import make_examples
+from polyfold_baselines.learning.weights import Weights, save
+
+LOOK = 250
+"""Steps between two looks at what is held out, each with a checkpoint."""
+WARM = 200
+MOST_TURN, MOST_SHIFT, MOST_SIZE = math.radians(12.0), 6.0, 0.08
+"""Pictures are turned [rad], moved [px] and scaled by up to so much: no more than garments lie differently. They are
+never mirrored, since a sentence or a side would then be wrong."""
+
+Build = Callable[[Mapping[str, Any]], nn.Module]
+"""Makes the network of what ``fit.json`` says."""
+
+
+class FitConfig(BaseModel):
+    """What to learn, from what, for how long; it decides the weights."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    row: str = Field(description="which baseline")
+    demos: str = Field(description="folder of `polyfold demos`")
+    passes: int = Field(default=100_000, ge=1, description="folds looked at, each as often as it comes")
+    batch: int = Field(default=32, ge=1, description="folds in a step")
+    learning_rate: float = Field(default=5e-4, gt=0, description="largest, of AdamW")
+    weight_decay: float = Field(default=0.05, ge=0, description="of AdamW")
+    most_error_mm: float = Field(default=15.0, gt=0, description="folds that ended farther from the ideal are left out")
+    width: int = Field(default=128, ge=16, description="of the network")
+    depth: int = Field(default=4, ge=1, description="of the network")
+    precision: Literal["float32", "bfloat16"] = Field(default="bfloat16", description="of training")
+    seed: int = Field(default=0, ge=0, description="of weights, order and augmentation")
+
+
+@dataclass
+class _Progress:
+    """How far a training has come."""
+
+    step: int = 0
+    minutes: float = 0.0
+
+
+def fit(config: FitConfig, build: Build, out: Path, device: str = "auto", progress: bool = True) -> Path:
+    """Train, or go on with training, and return the path of the weights.
+
+    Args:
+        config: what to do.
+        build: makes the network of what ``fit.json`` says.
+        out: folder for ``weights.safetensors``, ``checkpoint.safetensors`` and ``metrics.jsonl``.
+        device: ``cpu``, ``cuda`` or ``auto``.
+        progress: show a progress bar.
+
+    Raises:
+        ConfigError: if the folder holds another training or is in use, or the demonstrations teach nothing.
+    """
+    torch.manual_seed(config.seed)
+    demos = Demos.read(config.demos)
+    note = json.dumps({**config.model_dump(exclude={"demos"}), "demos": demos.hash, "arms": demos.plan.arms}, indent=2)
+    out.mkdir(parents=True, exist_ok=True)
+    with exclusive(out):
+        held = out / "fit.json"
+        if held.exists() and held.read_text(encoding="utf-8") != note:
+            raise ConfigError(f"{out} holds another training; choose another folder")
+        held.write_text(note, encoding="utf-8")
+        learner = _Learner(config, build(json.loads(note)), demos, device)
+        learner.resume(out / "checkpoint.safetensors")
+        learner.run(JsonLines(out / "metrics.jsonl"), out / "checkpoint.safetensors", progress)
+        found = Weights(learner.network, json.loads(note), learner.progress.minutes, learner.last)
+        save(out / "weights.safetensors", found)
+    return out / "weights.safetensors"
+
+
+class _Learner:
+    """A network while it learns."""
+
+    def __init__(self, config: FitConfig, network: nn.Module, demos: Demos, device: str) -> None:
+        self._config, self.arms = config, int(demos.plan.arms)
+        self._device = torch.device(("cuda" if torch.cuda.is_available() else "cpu") if device == "auto" else device)
+        self.network = network.to(self._device)
+        self._learned, self._held = make_examples(demos, config.most_error_mm)
+        self._optimizer = torch.optim.AdamW(
+            self.network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay
+        )
+        self.progress = _Progress()
+        self.last: dict[str, float] = {}
+
+    @property
+    def steps(self) -> int:
+        """Of the whole training."""
+        return math.ceil(self._config.passes / self._config.batch)
+
+    def run(self, metrics: JsonLines, checkpoint: Path, progress: bool) -> None:
+        """The steps that are not done yet."""
+        from tqdm.auto import tqdm
+
+        begun, before = time.monotonic(), self.progress.minutes
+        losses: list[float] = []
+        with tqdm(total=self.steps, initial=self.progress.step, unit="step", disable=not progress) as bar:
+            while self.progress.step < self.steps:
+                losses.append(self._step(self.progress.step))
+                self.progress.step += 1
+                bar.update()
+                if self.progress.step % LOOK == 0 or self.progress.step == self.steps:
+                    self.progress.minutes = before + (time.monotonic() - begun) / 60
+                    self.last = {"loss": float(np.mean(losses)), **self.measure()}
+                    losses.clear()
+                    passes = self.progress.step * self._config.batch
+                    metrics.append({"passes": passes, "minutes": round(self.progress.minutes, 2), **self.last})
+                    self._save(checkpoint)
+                    bar.set_postfix({name: f"{value:.2f}" for name, value in self.last.items()}, refresh=False)
+
+    def _step(self, number: int) -> float:
+        rng = np.random.default_rng([self._config.seed, number])
+        chosen = rng.integers(len(self._learned), size=self._config.batch)
+        frames, points = _moved(self._learned.frames[chosen], torch.from_numpy(self._learned.points[chosen]), rng)
+        for group in self._optimizer.param_groups:
+            group["lr"] = self._config.learning_rate * _rate(number, self.steps)
+        self.network.train()
+        with torch.autocast(self._device.type, torch.bfloat16, self._config.precision == "bfloat16"):
+            logits = self.network(frames.to(self._device))
+        found = heatmaps.loss(logits, points.to(self._device), self.arms)
+        self._optimizer.zero_grad(set_to_none=True)
+        found.backward()
+        nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
+        self._optimizer.step()
+        return float(found.detach())
+
+    def measure(self) -> dict[str, float]:
+        """Loss and pick error on garments held out."""
+        errors, losses = [], []
+        self.network.eval()
+        with torch.inference_mode():
+            for begin in range(0, len(self._held), 64):
+                part = slice(begin, begin + 64)
+                logits = self.network(self._held.frames[part].to(self._device))
+                points = self._held.points[part]
+                losses.append(float(heatmaps.loss(logits, torch.from_numpy(points).to(self._device), self.arms)))
+                picks, _ = heatmaps.read(logits, self._held.masks[part], self.arms)
+                errors.append(heatmaps.pick_error(picks, points))
+        return {"held_out_loss": float(np.mean(losses)), "pick_error_px": float(np.concatenate(errors).mean())}
+
+    def resume(self, path: Path) -> None:
+        """Go on where a checkpoint is, if there is one."""
+        if not path.exists():
+            return
+        from safetensors.torch import load_file
+
+        stored = load_file(path)
+        state = json.loads(bytes(stored.pop("state").numpy()).decode())
+        self.progress = _Progress(state["step"], state["minutes"])
+        self.last = state["last"]
+        parameters = dict(self.network.named_parameters())
+        self.network.load_state_dict({name[2:]: value for name, value in stored.items() if name.startswith("n/")})
+        for name, parameter in parameters.items():
+            kept = {
+                key: stored[f"o/{name}/{key}"]
+                for key in ("exp_avg", "exp_avg_sq", "step")
+                if f"o/{name}/{key}" in stored
+            }
+            if kept:
+                self._optimizer.state[parameter] = {
+                    key: value if key == "step" else value.to(self._device) for key, value in kept.items()
+                }
+
+    def _save(self, path: Path) -> None:
+        from safetensors.torch import save_file
+
+        told = {"step": self.progress.step, "minutes": self.progress.minutes, "last": self.last}
+        tensors: dict[str, Tensor] = {
+            f"n/{name}": value.contiguous() for name, value in self.network.state_dict().items()
+        }
+        for name, parameter in self.network.named_parameters():
+            for key, value in self._optimizer.state.get(parameter, {}).items():
+                tensors[f"o/{name}/{key}"] = torch.as_tensor(value).contiguous().clone()
+        tensors["state"] = torch.tensor(list(json.dumps(told).encode()), dtype=torch.uint8)
+        part = path.with_suffix(".part")
+        save_file(tensors, part)
+        part.replace(path)
+
+
+def _rate(step: int, steps: int) -> float:
+    """Share of the largest learning rate: it rises, then falls along a cosine."""
+    warm = min(WARM, max(1, steps // 10))
+    return (step + 1) / warm if step < warm else 0.5 * (1 + math.cos(math.pi * (step - warm) / max(1, steps - warm)))
+
+
+def _moved(frames: Tensor, points: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
+    """Frames and points turned, moved and scaled together, each fold by its own."""
+    from torch.nn import functional
+
+    count, times, channels, side, _ = frames.shape
+    turn = torch.from_numpy(rng.uniform(-MOST_TURN, MOST_TURN, count).astype(np.float32))
+    size = torch.from_numpy((1 + rng.uniform(-MOST_SIZE, MOST_SIZE, count)).astype(np.float32))
+    shift = torch.from_numpy(rng.uniform(-MOST_SHIFT, MOST_SHIFT, (count, 2)).astype(np.float32))
+    cosine, sine = torch.cos(turn), torch.sin(turn)
+    turning = torch.stack([torch.stack([cosine, -sine], -1), torch.stack([sine, cosine], -1)], -2)
+    middle = (side - 1) / 2
+    there = (points - middle) @ (size[:, None, None] * turning).transpose(1, 2)[:, None] + middle + shift[:, None, None]
+    # Where each pixel of the new picture comes from, in the coordinates from -1 to 1 that torch samples in.
+    back = turning.transpose(1, 2) / size[:, None, None]
+    offset = -(back @ (shift / (side / 2))[..., None])
+    grid = functional.affine_grid(torch.cat([back, offset], -1), [count, 1, side, side], align_corners=False)
+    moved = functional.grid_sample(frames.reshape(count, times * channels, side, side), grid, align_corners=False)
+    return moved.reshape(frames.shape), there
