@@ -14,7 +14,7 @@ from polyfold.tasks._ideal import fold_ideally
 from polyfold.types import ActionMap, Episode, SimState, Step
 from polyfold.types._views import makes
 from polyfold.viz._draw._cloth import cloth_picture, sides_of
-from polyfold.viz._draw._filmstrips import Frame, filmstrip
+from polyfold.viz._draw._filmstrips import PANEL, Frame, filmstrip
 from polyfold.viz._draw._overlays import overlay
 from polyfold.viz._draw._saving import png
 
@@ -37,7 +37,9 @@ def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
 
 def _shown(episode: Episode, state: SimState) -> NDArray[np.uint8] | None:
     """A state drawn for people; None where it is not known, or an agent may have put the cloth back meanwhile."""
-    return None if episode.privileged or not state.known else cloth_picture(state, episode.garment)
+    if episode.privileged or not state.known:
+        return None
+    return cloth_picture(state, episode.garment, PANEL / max(state.camera.width, state.camera.height))
 
 
 @makes(Episode, "result")

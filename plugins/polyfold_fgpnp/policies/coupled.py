@@ -27,7 +27,7 @@ PRIOR = "what the best affordance adds, in standard deviations of labels"
 class CoupledConfig(LearnedConfig):
     """Parameters of policies whose second pick follows from the first."""
 
-    weights: str = Field(default="csam-camera", description=WEIGHTS)
+    weights: str = Field(default="csam", description=WEIGHTS)
     prior: float = Field(default=0.0, ge=0, description=PRIOR)
     slide: float = Field(default=0.0, ge=0, lt=0.5, description="share of their distance that the partner moves")
 
