@@ -14,11 +14,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.plugins.interfaces import Goal, Segmenter
 from polyfold.types import Action, Decision, Observation, Subgoal
-from polyfold_baselines.demos.demonstrating import LOWEST
-from polyfold_baselines.demos.window import Window
+from polyfold_baselines.agents.goals import GoalPictures
 
 if TYPE_CHECKING:
-    from torch import Tensor, nn
+    from torch import nn
 
     from polyfold_baselines.learning.weights import Weights
 
@@ -60,16 +59,7 @@ class Imitation(ABC):
 
     def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
         """Look at the garment, and at the goals as they would look from there."""
-        from polyfold_baselines.learning.examples import as_frame
-
-        self._window = Window.around(self._segmenter.segment(observation))
-        elevation = observation.camera.elevation
-        self._goals = []
-        for depth in goal.subgoal_depths or ():
-            heights = elevation - depth
-            self._goals.append(as_frame(self._window.view(heights), self._window.view(heights > LOWEST) > 0.5))
-        self._left = goal.fold_count or len(self._goals)
-        self._step = 0
+        self._goals = GoalPictures(goal, observation, self._segmenter.segment(observation))
         return ()
 
     def decide(self, observation: Observation) -> Decision | None:
@@ -79,22 +69,18 @@ class Imitation(ABC):
         from polyfold_baselines.learning import heatmaps
         from polyfold_baselines.learning.examples import as_frame
 
-        if self._step == self._left:
+        if (wanted := self._goals.next()) is None:
             return None
-        wanted: Tensor = self._goals[min(self._step, len(self._goals) - 1)]
-        self._step += 1
-        mask = self._window.view(self._segmenter.segment(observation)) > 0.5
-        heights = np.nan_to_num(observation.camera.elevation - observation.depth)
-        frames = torch.stack([as_frame(self._window.view(heights), mask), wanted])[None]
+        now = self._goals.now(observation, self._segmenter.segment(observation))
+        frames = torch.stack([as_frame(*now), as_frame(*wanted)])[None]
         with torch.inference_mode():
             logits = self._weights.network(frames)
-        arms = int(self._weights.config["arms"])
-        picks, places = heatmaps.read(logits, mask[None], arms)
+        picks, places = heatmaps.read(logits, now[1][None], int(self._weights.config["arms"]))
         return Decision(self._action(*heatmaps.merged(picks[0], places[0]), observation))
 
     def _action(self, picks: Floats, places: Floats, observation: Observation) -> Action:
         limit = [observation.camera.width - 1.0, observation.camera.height - 1.0]
-        return Action(*(np.clip(self._window.to_pixels(points), 0.0, limit) for points in (picks, places)))
+        return Action(*(np.clip(self._goals.window.to_pixels(points), 0.0, limit) for points in (picks, places)))
 
 
 def _version(path: Path) -> tuple[int, int]:

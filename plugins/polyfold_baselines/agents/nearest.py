@@ -16,9 +16,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from polyfold.errors import ConfigError, PlanError
 from polyfold.plugins.interfaces import Goal, Segmenter
 from polyfold.types import Action, Decision, Observation, Subgoal
-from polyfold_baselines.demos.demonstrating import LOWEST, unpacked
+from polyfold_baselines.agents.goals import GoalPictures
+from polyfold_baselines.demos.demonstrating import unpacked
 from polyfold_baselines.demos.store import Demos
-from polyfold_baselines.demos.window import Window
 
 Floats = NDArray[np.float64]
 
@@ -51,33 +51,23 @@ class NearestDemo:
         if not of_kind.any():
             raise PlanError(f"no demonstration is of a {goal.kind}; give some with polyfold demos")
         self._rows = np.flatnonzero(of_kind)
-        self._window = Window.around(self._segmenter.segment(observation))
-        self._goals = [
-            self._window.view(observation.camera.elevation - depth > LOWEST) > 0.5
-            for depth in goal.subgoal_depths or ()
-        ]
-        # With the final goal alone each fold is one towards it, of as many as the task takes.
-        self._final = len(self._goals) < (goal.fold_count or 1)
-        self._left = goal.fold_count or len(self._goals)
-        self._step = 0
+        self._goals = GoalPictures(goal, observation, self._segmenter.segment(observation))
         return ()
 
     def decide(self, observation: Observation) -> Decision | None:
         """The action of the closest demonstration; None after the last fold."""
-        if self._step == self._left:
+        if (wanted := self._goals.next()) is None:
             return None
         seen = self._segmenter.segment(observation)
-        wanted = self._goals[0 if self._final else self._step]
-        self._step += 1
         columns, rows = self._demos.columns, self._rows
-        goals = columns["end"][rows] if self._final else rows
-        alike = _overlaps(self._window.view(seen) > 0.5, self._demos.masks[rows])
-        alike += _overlaps(wanted, unpacked(columns["goal_mask"][goals]))
+        goals = columns["end"][rows] if self._goals.final else rows
+        alike = _overlaps(self._goals.now(observation, seen)[1], self._demos.masks[rows])
+        alike += _overlaps(wanted[1], unpacked(columns["goal_mask"][goals]))
         row = rows[int(np.argmax(alike))]
         arms = np.isfinite(columns["picks"][row][:, 0])
-        picks = _on_cloth(self._window.to_pixels(columns["picks"][row][arms]), seen)
+        picks = _on_cloth(self._goals.window.to_pixels(columns["picks"][row][arms]), seen)
         limit = [observation.camera.width - 1.0, observation.camera.height - 1.0]
-        places = np.clip(self._window.to_pixels(columns["places"][row][arms]), 0.0, limit)
+        places = np.clip(self._goals.window.to_pixels(columns["places"][row][arms]), 0.0, limit)
         return Decision(Action(picks, places), Subgoal(str(columns["text"][row])))
 
 
