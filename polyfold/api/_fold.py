@@ -22,7 +22,7 @@ from polyfold.plugins.interfaces import RecordsMotion, Simulator
 from polyfold.rollout import run_episode
 from polyfold.rollout._sentences import plain
 from polyfold.types import Episode, Step
-from polyfold.viz._film import Moment, film
+from polyfold.viz._film import Moment, write_film
 
 GIF_RATE = 12.0
 """Frames of the animation per simulated second."""
@@ -146,7 +146,7 @@ def save(episode: Episode, folder: Path, moments: Sequence[Moment] = (), started
     viz.save(viz.filmstrip_of(episode), folder / "filmstrip.png")
     (folder / "fold.gif").unlink(missing_ok=True)  # an earlier fold's
     if moments:
-        film(episode, moments, folder / "fold.gif", GIF_RATE)
+        write_film(episode, moments, folder / "fold.gif", GIF_RATE)
 
 
 def _prepare(folder: Path) -> Path:

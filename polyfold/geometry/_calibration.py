@@ -110,7 +110,7 @@ class Calibration:
         return found
 
     @staticmethod
-    def seen_of(picture: NDArray[np.uint8], board: str) -> int:
+    def corners_seen(picture: NDArray[np.uint8], board: str) -> int:
         """How many corners of a board can be told in a picture, uint8, shape (H, W, 3); 0 if too few for a view.
 
         Raises:

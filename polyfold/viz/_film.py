@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from polyfold.types import Episode, Observation, SimState, Step
 from polyfold.viz._draw._animation import gif
 from polyfold.viz._draw._canvas import Canvas, Page, line_height, wrapped
-from polyfold.viz._draw._cloth import cloth_picture
 from polyfold.viz._draw._drawing import draw_fold_line
 from polyfold.viz._draw._overlays import overlay
 from polyfold.viz._draw._style import ARMS, FAINT, INK, PAPER
+from polyfold.viz._pictures import shown
 
 Image = NDArray[np.uint8]
 Floats = NDArray[np.float64]
@@ -43,7 +43,7 @@ class Moment:
     fold: int
 
 
-def film(episode: Episode, moments: Sequence[Moment], path: Path, fps: float) -> Path:
+def write_film(episode: Episode, moments: Sequence[Moment], path: Path, fps: float) -> Path:
     """Write an episode as an endless GIF.
 
     Args:
@@ -65,17 +65,14 @@ def film(episode: Episode, moments: Sequence[Moment], path: Path, fps: float) ->
 
 
 def _cloth(episode: Episode, seen: Observation, state: SimState, oversample: int = 2) -> Image:
-    zoom = SIDE / max(seen.rgb.shape[:2])
-    hidden = episode.privileged or not state.known
-    shown = None if hidden else cloth_picture(state, episode.garment, zoom, oversample)
-    return overlay(seen, zoom=zoom, shown=shown)
+    return overlay(seen, zoom=SIDE / max(seen.rgb.shape[:2]), shown=shown(episode, state, SIDE, oversample))
 
 
 def _plan(episode: Episode, step: Step, before: SimState) -> Image:
     """What was seen before a fold, with its line and its picks and places."""
     zoom = SIDE / max(step.observation.rgb.shape[:2])
-    shown = None if episode.privileged or not before.known else cloth_picture(before, episode.garment, zoom)
-    return overlay(step.observation, step.scene, step.fold_line, step.action, zoom=zoom, shown=shown)
+    drawn = shown(episode, before, SIDE)
+    return overlay(step.observation, step.scene, step.fold_line, step.action, zoom=zoom, shown=drawn)
 
 
 def _motion(episode: Episode, step: Step, before: SimState, moments: Sequence[Moment]) -> Iterator[Image]:

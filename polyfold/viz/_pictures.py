@@ -22,10 +22,10 @@ from polyfold.viz._draw._saving import png
 @makes(Episode, "filmstrip")
 def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
     """One panel per fold, then the result beside the ideal, uint8, shape (H, W, 3)."""
-    result = _shown(episode, episode.final_state)
+    result = shown(episode, episode.final_state)
     before = [episode.initial_state, *(step.after for step in episode.steps)]
     return filmstrip(
-        [_frame(step, _shown(episode, state)) for step, state in zip(episode.steps, before, strict=False)],
+        [_frame(step, shown(episode, state)) for step, state in zip(episode.steps, before, strict=False)],
         episode.final.rgb,
         heading=f"{episode.instruction} ({episode.garment.name})",
         result_caption=result_caption(episode),
@@ -35,18 +35,25 @@ def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
     )
 
 
-def _shown(episode: Episode, state: SimState) -> NDArray[np.uint8] | None:
-    """A state drawn for people; None where it is not known, or an agent may have put the cloth back meanwhile."""
+def shown(episode: Episode, state: SimState, side: int = PANEL, oversample: int = 2) -> NDArray[np.uint8] | None:
+    """A state drawn for people; None where it is not known, or an agent may have put the cloth back meanwhile.
+
+    Args:
+        episode: what the state is of.
+        state: where the cloth is.
+        side: of the picture, the longer one [px].
+        oversample: samples per pixel and axis.
+    """
     if episode.privileged or not state.known:
         return None
-    return cloth_picture(state, episode.garment, PANEL / max(state.camera.width, state.camera.height))
+    return cloth_picture(state, episode.garment, side / max(state.camera.width, state.camera.height), oversample)
 
 
 @makes(Episode, "result")
 def result_of(episode: Episode) -> NDArray[np.uint8]:
     """The last picture with the ideal outline dashed over it, uint8, shape (H, W, 3)."""
-    shown = _shown(episode, episode.final_state)
-    return overlay(episode.final, outline=_ideal_outline(episode), shown=shown)
+    drawn = shown(episode, episode.final_state)
+    return overlay(episode.final, outline=_ideal_outline(episode), shown=drawn)
 
 
 def _ideal_outline(episode: Episode) -> NDArray[np.float64] | None:

@@ -1,13 +1,15 @@
 """Demonstrations: what is seen, done and wanted, gone on with after kills, and never mixed with others."""
 
+import re
+
 import numpy as np
 import pytest
-from conftest import PLAN
+from demo_plan import PLAN
 from hypothesis import given
 from hypothesis import strategies as st
 from polyfold_baselines.demos.command import collect
 from polyfold_baselines.demos.pictures import sheet
-from polyfold_baselines.demos.store import Demos
+from polyfold_baselines.demos.store import DemoFolder, Demos
 from polyfold_baselines.demos.window import SIDE, Window
 
 from polyfold.cli import main
@@ -79,8 +81,6 @@ def test_a_folder_is_gone_on_with_and_says_by_a_hash_what_it_holds(demonstrated,
 )
 def test_what_can_not_be_demonstrated_is_said(tmp_path, capsys, arguments, says):
     assert main(["demos", "--out", str(tmp_path / "out"), *arguments]) == 1
-    import re
-
     assert re.search(says, capsys.readouterr().err)
     assert not (tmp_path / "out").exists()
 
@@ -93,4 +93,7 @@ def test_demonstrations_show_themselves(demonstrated):
 
 def test_unfinished_ones_teach_nothing(tmp_path):
     with pytest.raises(ConfigError, match="there are no demonstrations"):
+        Demos.read(tmp_path)
+    DemoFolder(tmp_path, PLAN)
+    with pytest.raises(ConfigError, match="not finished"):
         Demos.read(tmp_path)

@@ -5,8 +5,8 @@ import pytest
 from PIL import Image
 
 import polyfold
-from polyfold import viz
 from polyfold.viz._draw._cloth import cloth_picture, sides_of
+from polyfold.viz._pictures import _frame
 
 TABLE = np.array([236, 236, 232])
 
@@ -74,4 +74,4 @@ def test_a_filmstrip_says_what_happened_and_not_how_long_it_took(folded):
     episode, _ = folded
     (step,) = episode.steps
     assert step.in_words() == "two arms"
-    assert viz.filmstrip_of(episode).shape[0] > 400
+    assert _frame(step, None).caption == "two arms"

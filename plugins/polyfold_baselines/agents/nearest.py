@@ -6,6 +6,7 @@ It has no source: any imitation that is worth its training must be better.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import ClassVar
 
@@ -37,7 +38,7 @@ class NearestDemo:
         demos: Path = Field(description="folder of `polyfold demos`")
 
     def __init__(self, config: Config, segmenter: Segmenter) -> None:
-        self._demos = _read(config.demos)
+        self._demos = _read(config.demos.resolve(), _version(config.demos / "dataset.json"))
         self._segmenter = segmenter
 
     @classmethod
@@ -71,11 +72,17 @@ class NearestDemo:
         return Decision(Action(picks, places), Subgoal(str(columns["text"][row])))
 
 
-def _read(path: Path) -> Demos:
+@lru_cache(maxsize=2)
+def _read(path: Path, version: int) -> Demos:
+    """Demonstrations, read once until they change."""
     try:
         return Demos.read(path)
     except ConfigError as error:
         raise ConfigError(f"nearest-demo: {error}") from error
+
+
+def _version(path: Path) -> int:
+    return path.stat().st_mtime_ns if path.exists() else 0
 
 
 def _overlaps(mask: NDArray[np.bool_], others: NDArray[np.bool_]) -> Floats:

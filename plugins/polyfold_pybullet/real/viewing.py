@@ -30,7 +30,7 @@ class Views:
             ConfigError: if it holds something else, or views that can't be read.
             GarmentError: if the board's description can't be read.
         """
-        Calibration.seen_of(np.zeros((8, 8, 3), np.uint8), board)
+        Calibration.corners_seen(np.zeros((8, 8, 3), np.uint8), board)
         if (folder / POSES).is_file():
             names, _, tools = read_views(folder)
             return cls(folder, board, dict(zip(names, tools.tolist(), strict=True)))
@@ -53,7 +53,7 @@ class Views:
         """
         import cv2
 
-        corners = Calibration.seen_of(frame.rgb, self._board)
+        corners = Calibration.corners_seen(frame.rgb, self._board)
         if not corners:
             return "not kept: the board is not seen; show all of it, larger and sharp"
         name = self._free_name()

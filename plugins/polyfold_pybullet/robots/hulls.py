@@ -42,7 +42,7 @@ def with_lean_hulls(urdf: Path, into: Path) -> Path:
             path = urdf.parent / str(mesh.get("filename"))
             scale = max(abs(float(value)) for value in mesh.get("scale", "1").split())
             if path.is_file() and (corners := _lean_corners(path, TOLERANCE / scale)) is not None:
-                lean[mesh] = _written(corners, into / f"{path.parent.name}-{path.stem}-hull.obj")
+                lean[mesh] = _written(corners, into / f"{len(lean)}-{path.stem}-hull.obj")
     if not lean:
         return urdf
     for mesh in robot.iter("mesh"):
