@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from polyfold.garments import Fabric, Mesh
 from polyfold.geometry import Camera
 from polyfold.types import Action
+from polyfold_xpbd.ahead.calling import ahead
 from polyfold_xpbd.giving import ALL, borne, give_way
 from polyfold_xpbd.grasp import Grasp, plan_motion, take_hold
 from polyfold_xpbd.kernels.guarantee.close import watch_memory
@@ -20,6 +21,8 @@ from polyfold_xpbd.kernels.vectors import vertex_normals
 from polyfold_xpbd.model import ClothModel, build_model
 from polyfold_xpbd.stability import bending_lead, bent_normal, time_step
 from polyfold_xpbd.tethers import TetherMap, Tethers
+
+average_normals = ahead("average_normals")(vertex_normals)
 
 SLACK = 0.002
 """How far particles may stray from where they were foreseen before near pairs are listed again [m]."""
@@ -119,7 +122,7 @@ class Solver:
 
     def surface_normals(self) -> NDArray[np.float32]:
         """Unit normals of the particles, shape (N, 3)."""
-        vertex_normals(self.x, self._model.normal_corners, self._model.normal_use, self._normals)
+        average_normals(self.x, self._model.normal_corners, self._model.normal_use, self._normals)
         return self._normals
 
     def memory(self) -> dict[str, NDArray[Any]]:

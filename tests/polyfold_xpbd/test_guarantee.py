@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from polyfold_xpbd.kernels.loop import advance
 
 from experiments.benchmarks.cloth.folding import cloth_mask, random_action
 from experiments.benchmarks.cloth.measures import crossing_edges
@@ -57,12 +56,6 @@ def test_a_state_made_without_the_guarantee_is_refused(guaranteed):
     other.reset(plugins.generate_garment("square", SEED, 0.0155), SEED)
     with pytest.raises(SimulationError, match="without the guarantee"):
         simulator.restore(other.state())
-
-
-def test_no_class_of_ours_is_in_numba_s_cache(guaranteed):
-    signatures = " ".join(map(repr, advance.nopython_signatures))
-    assert "Tuple" in signatures, "the guarantee's arrays are there"
-    assert "Watch" not in signatures
 
 
 def held_tshirt(guaranteed):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from polyfold_xpbd.kernels.motion import is_finite
-from polyfold_xpbd.kernels.near import by_height
-from polyfold_xpbd.kernels.pairs import list_edge_pairs, list_vertex_pairs, mark_sharp
+from polyfold_xpbd.kernels.near import sort_by_height
+from polyfold_xpbd.kernels.pairs import list_edge_pairs, list_vertex_pairs, mark_sharp, set_aside
 from polyfold_xpbd.kernels.strays import mark_around, redirect, strays
-from polyfold_xpbd.kernels.vectors import compiled, vertex_normals
+from polyfold_xpbd.kernels.vectors import compiled, copy_rows, vertex_normals
 
 HORIZON = 16
 """Substeps for which a list of pairs looks ahead."""
@@ -38,8 +38,9 @@ def list_anew(
     whole |= count < 0
     if whole:
         clock[1] = 0
-        listed[:, :], foreseen[:, :] = x, v
-        order[:] = by_height(x, thickness)
+        copy_rows(x, listed)
+        copy_rows(v, foreseen)
+        sort_by_height(x, thickness, order)
         mark_sharp(normals, edges, sharp, bent)
         vertices_again[:], edges_again[:], close[:] = True, True, True
     else:
@@ -50,10 +51,7 @@ def list_anew(
         mark_around(
             x, foreseen, horizon, reach, widest, corners, edges, stray, count, vertices_again, edges_again, close
         )  # fmt: skip
-    pairs = clock[3]
-    moved[:pairs] = -1
-    old_second[:pairs], old_side[:pairs] = second[:pairs], side[:pairs]
-    old_over[:pairs], old_load[:pairs] = over[:pairs], load[:pairs]
+    set_aside(clock[3], moved, second, side, over, load, old_second, old_side, old_over, old_load)
     # What flies wildly comes near everything in that time: then there is room for what is near now, and the next
     # substep lists anew.
     crowded = False

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
+from polyfold_xpbd.ahead.calling import ahead, digest
 from polyfold_xpbd.compiling import kept
 from polyfold_xpbd.kernels.contact import resolve, table, warm_start
 from polyfold_xpbd.kernels.guarantee.apart import keep_apart
@@ -33,13 +32,7 @@ REST_OVER = 40
 """Substeps over which the cloth is watched for rest."""
 
 
-def _digest() -> str:
-    """SHA-256 of the kernels' sources."""
-    sources = sorted(Path(__file__).parent.rglob("*.py"))
-    return hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()
-
-
-def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
+def _kept_under(sources: str) -> Callable[..., tuple[int, int]]:
     """The loop, whose machine code is kept on disk under a digest: numba's key holds what a function closes over."""
 
     @kept
@@ -67,7 +60,7 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
         Returns:
             (status, substeps done).
         """
-        digest  # noqa: B018  # pyright: ignore[reportUnusedExpression]  (closed over, for numba's key)
+        sources  # noqa: B018  # pyright: ignore[reportUnusedExpression]  (closed over, for numba's key)
         dt, thickness, slack, cell = settings[0], settings[1], settings[2], settings[3]
         table_friction, cloth_friction, recovery, fastest = settings[4], settings[5], settings[6], settings[7]
         inverse_dt = np.float32(1.0) / dt
@@ -147,4 +140,4 @@ def _kept_under(digest: str) -> Callable[..., tuple[int, int]]:
     return advance
 
 
-advance = _kept_under(_digest())
+advance = ahead("advance")(_kept_under(digest()))

@@ -122,11 +122,10 @@ def gather(box, cell, start, members, in_order, columns, rows, grid, mine, askin
 
 
 @compiled
-def by_height(x, step):
-    """Vertices at positions ``x`` [m], shape (N, 3), from the table upwards in bins of ``step`` [m], shape (N,)."""
+def sort_by_height(x, step, order):
+    """Put vertices at ``x`` [m], shape (N, 3), into ``order``, shape (N,), bin by bin of ``step`` [m] up the table."""
     bins = 512
     start = np.zeros(bins + 1, np.int32)
-    order = np.empty(x.shape[0], np.int32)
     inverse = np.float32(1.0) / step
     for i in range(x.shape[0]):
         start[min(bins - 1, max(0, int(x[i, 2] * inverse))) + 1] += 1
@@ -136,4 +135,3 @@ def by_height(x, step):
         b = min(bins - 1, max(0, int(x[i, 2] * inverse)))
         order[start[b]] = i
         start[b] += 1
-    return order

@@ -78,6 +78,23 @@ def _enter(p, one, other, first, second, side, over, load):
 
 
 @compiled
+def set_aside(pairs, moved, second, side, over, load, old_second, old_side, old_over, old_load):
+    """Copy the first ``pairs`` of the list to the old list, as moved nowhere."""
+    for k in range(pairs):
+        moved[k] = -1
+        old_second[k], old_side[k], old_over[k] = second[k], side[k], over[k]
+        for m in range(4):
+            old_load[k, m] = load[k, m]
+
+
+@compiled
+def _replace(new_starts, new_stops, starts, stops):
+    """Let ranges be the new ones, shapes (N,)."""
+    for i in range(starts.shape[0]):
+        starts[i], stops[i] = new_starts[i], new_stops[i]
+
+
+@compiled
 def _keep(p, one, k, old_second, old_side, old_over, old_load, first, second, side, over, load, moved):
     """Make pair p the old pair k, whose first member is ``one``."""
     first[p], second[p], side[p], over[p] = one, old_second[k], old_side[k], old_over[k]
@@ -178,7 +195,7 @@ def list_vertex_pairs(
             _recall(pairs, near[n], starts[i], stops[i], old_second, old_side, old_over, old_load, side, over, load)
             pairs += 1
         new_stops[i] = pairs
-    starts[:], stops[:] = new_starts, new_stops
+    _replace(new_starts, new_stops, starts, stops)
     return pairs
 
 
@@ -262,5 +279,5 @@ def list_edge_pairs(
                     _keep(pairs, e, k, old_second, old_side, old_over, old_load, first, second, side, over, load, moved)
                     pairs += 1
         new_stops[e] = pairs
-    starts[:], stops[:] = new_starts, new_stops
+    _replace(new_starts, new_stops, starts, stops)
     return pairs

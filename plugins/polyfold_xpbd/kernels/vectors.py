@@ -23,6 +23,17 @@ def shift(vectors, i, scale, x, y, z):
     vectors[i, 2] += scale * z
 
 
+@compiled
+def copy_rows(source, target):
+    """Copy rows, shape (N, 3), one by one.
+
+    For ``target[:, :] = source`` numba 0.68 would also compile a message in case shapes differ, two seconds of work.
+    """
+    for i in range(source.shape[0]):
+        for axis in range(3):
+            target[i, axis] = source[i, axis]
+
+
 @kept
 def vertex_normals(x, corners, use, normals):
     """Area-weighted mean normals of the particles into ``normals``, shape (N, 3).

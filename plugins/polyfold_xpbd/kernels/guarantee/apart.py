@@ -17,7 +17,7 @@ import numpy as np
 
 from polyfold_xpbd.kernels.guarantee.close import MOST_STRAYS, list_around, list_close
 from polyfold_xpbd.kernels.guarantee.distance import TINY, between_edges, from_triangle
-from polyfold_xpbd.kernels.vectors import compiled
+from polyfold_xpbd.kernels.vectors import compiled, copy_rows
 
 APART, FARTHER = 0.1, 0.01
 """Bodies are kept this far apart, in thicknesses, unless they were nearer before; then they part by so much more."""
@@ -246,7 +246,7 @@ def keep_apart(x, start, dt, thickness, edge_length, corners, edges, mobility, w
         if _look(x, after, watch) == 0:
             counts[2] += 1
             return True
-    x[:, :] = start
+    copy_rows(start, x)
     listed = list_close(x, start, dt, edge_length, corners, edges, watch)
     counts[2], counts[3] = 0, 0
     return listed

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from polyfold_xpbd.kernels.guarantee.distance import between_edges, from_triangle
 from polyfold_xpbd.kernels.near import ROOM, gather, sort_by_cell, swept_boxes
 from polyfold_xpbd.kernels.pairs import CELL
-from polyfold_xpbd.kernels.vectors import compiled
+from polyfold_xpbd.kernels.vectors import compiled, copy_rows
 
 AHEAD, STRAY, WIDER = 8, 0.0005, 3.0
 """Substeps for which a list looks ahead, and how far particles may leave that path [m].
@@ -185,7 +185,8 @@ def list_close(x, start, dt, edge_length, corners, edges, watch):
         Whether there was room for the substep itself.
     """
     inverse, counts = np.float32(1.0) / dt, watch.counts
-    watch.listed[:, :], watch.allowed[:] = start, np.float32(STRAY)
+    copy_rows(start, watch.listed)
+    watch.allowed[:] = np.float32(STRAY)
     for i in range(x.shape[0]):
         for axis in range(3):
             watch.foreseen[i, axis] = inverse * (x[i, axis] - start[i, axis])
@@ -249,7 +250,8 @@ def list_around(i, off, dt, corners, edges, watch):
         counts[0] += _enter_vertex(x, v, allowed, horizon, i, corners, near[n], bodies, ways, normals, counts[0])
     for t in range(corners.shape[0]):
         if i in (corners[t, 0], corners[t, 1], corners[t, 2]):
-            own[:] = boxes[i]
+            for axis in range(6):
+                own[axis] = boxes[i, axis]
             for c in range(3):
                 _grow(own, boxes[corners[t, c]])
             _grow(around, own)
