@@ -86,6 +86,12 @@ COMMANDS = (
         headings=("Garments of the package's own kinds:", "Outlines of real t-shirts, towels and shorts:"),
     ),
     CommandStep("cell", 0.3, (("cell.reach", "--robots", "panda"), ("cell.folds",))),
+    CommandStep(
+        "cell_yumi",
+        0.4,
+        (("cell.reach", "--robots", "yumi"), ("cell.folds", "--robot", "yumi", "--folds", "100")),
+        needs=("rtbdata",),
+    ),
     CommandStep("cell_grips", 0.1, (("cell.grips",),)),
     CommandStep("coverage", 0.1, (("coverage",),)),
     CommandStep("tokens", 0.1, (("language.tokens",),)),

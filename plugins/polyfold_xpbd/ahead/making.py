@@ -195,8 +195,8 @@ def _named(kind: Any) -> str:
         example = np.zeros((1,) * kind.ndim, as_dtype(kind.dtype))
         example.flags.writeable = kind.mutable
         return type_of(example)
-    if isinstance(kind, types.BaseTuple):
-        return f"({', '.join(map(_named, kind.types))})"
+    if isinstance(kind, (types.Tuple, types.UniTuple)):
+        return f"({', '.join(map(_named, kind))})"
     return "none" if isinstance(kind, types.NoneType) else as_dtype(kind).str[1:]
 
 
