@@ -17,6 +17,13 @@ REFERENCES = {
 """What results are compared with, in words."""
 
 
+INTERVALS = (
+    "Intervals are of 95 %, for other sentences and other garments: episodes that share either are not taken for "
+    "independent. Of shares they are Wilson's, with as many episodes as independent ones would say as much; of errors "
+    "and times, studentised with a correction for skewness (Hall 1992)."
+)
+"""How all intervals of tables and reports are made; see :mod:`polyfold.analysis._intervals`."""
+
 ORACLE = "oracle"
 """The agent that shows which tasks are fit to judge others by."""
 

@@ -109,16 +109,39 @@ class Table:
         return "\n".join([*lines, f"% {self.note}"] if self.note else lines)
 
     def csv(self) -> str:
-        """Comma-separated values with a header line."""
+        """Comma-separated values with a header line: of figures, mean and both ends of the interval as numbers.
+
+        Their columns are called ``name``, ``name low`` and ``name high``; what is not known is left empty.
+        """
         out = io.StringIO()
-        csv.writer(out, lineterminator="\n").writerows([self.headers, *self.rows])
+        columns = [_numbers(header, column) for header, column in zip(self.headers, self._columns(), strict=True)]
+        csv.writer(out, lineterminator="\n").writerows(
+            [name for column in columns for name in column[row]] for row in range(1 + len(self.cells))
+        )
         return out.getvalue().rstrip("\n")
+
+    def _columns(self) -> list[list[Cell]]:
+        return [[row[place] for row in self.cells] for place in range(len(self.headers))]
 
     def _repr_html_(self) -> str:
         return self.html()
 
     def __str__(self) -> str:
         return self.markdown()
+
+
+def _numbers(header: str, column: Sequence[Cell]) -> list[list[str]]:
+    """A column for machines, header first, each row in as many parts as it takes."""
+    if not any(isinstance(cell, Figure) for cell in column):
+        return [[header], *([str(cell)] for cell in column)]
+    return [[header, f"{header} low", f"{header} high"], *map(_parts, column)]
+
+
+def _parts(cell: Cell) -> list[str]:
+    if isinstance(cell, str):
+        return ["" if cell == "–" else cell, "", ""]
+    value = cell.value
+    return [f"{number:.6g}" if math.isfinite(number) else "" for number in (value.mean, value.low, value.high)]
 
 
 def _latex_row(cells: Sequence[str], rows: int = 1) -> str:

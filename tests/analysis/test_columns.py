@@ -1,5 +1,6 @@
 """A metric and a criterion of a plugin stand in every table and picture as the bundled ones do."""
 
+import csv
 import json
 from typing import ClassVar
 
@@ -74,7 +75,9 @@ def test_it_stands_in_tables_and_differences_with_unit_and_digits(results):
     table = polyfold.table(results)
     assert table.headers[3] == "covered [%]", "what the study's own criterion bounds comes first"
     assert table.headers[-2:] == ["success %", "lenient %"]
-    assert "100.00 [100.00, 100.00]" in table.csv()
+    assert "100.00 [100.00, 100.00]" in table.markdown()
+    rows = list(csv.DictReader(table.csv().splitlines()))
+    assert ("100", "100", "100") in [tuple(r[f"covered [%]{end}"] for end in ("", " low", " high")) for r in rows]
     assert "covered [%]" in polyfold.compare(results, "oracle, affordance-pair", "noop, affordance-pair").headers
     assert polyfold.table(results, ["covered-area", "compact"]).headers[3:] == ["covered [%]", "success %"]
 

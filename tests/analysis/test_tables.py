@@ -1,8 +1,10 @@
 """Tables as text in every form."""
 
 import csv
+import math
 
-from polyfold.analysis import Table
+from polyfold.analysis import Estimate, Table
+from polyfold.analysis._tables import Figure
 
 TABLE = Table(
     ["variant", "kind", "n", "success %"],
@@ -23,6 +25,16 @@ def test_latex_is_for_booktabs_and_says_what_rows_share_once():
 
 def test_csv_has_every_cell_in_every_row():
     assert list(csv.reader(TABLE.csv().splitlines())) == [TABLE.headers, *TABLE.rows]
+
+
+def test_csv_has_figures_as_numbers():
+    some = Figure(Estimate(97.25, 90.125, math.inf, 3), note="(n = 3)", certain=True)
+    table = Table(["variant", "success %"], [["ours", some], ["theirs", "–"]])
+    assert table.csv().splitlines() == [
+        "variant,success %,success % low,success % high",
+        "ours,97.25,90.125,",
+        "theirs,,,",
+    ]
 
 
 def test_markdown_keeps_bars_within_cells():

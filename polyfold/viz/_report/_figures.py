@@ -14,7 +14,7 @@ from polyfold.analysis._tables import Figure
 from polyfold.evaluation._attribution import CAUSES
 from polyfold.logs import StudyEpisodeRecord
 from polyfold.viz._report._charts import Part, bar, curve_panel, dot
-from polyfold.viz._report._curves import success_curve
+from polyfold.viz._report._curves import SCALES, success_curve
 from polyfold.viz._report._source import Source
 
 STAGES = ("reset", "subgoals", "grounding", "language", "policy", "execution")
@@ -83,6 +83,18 @@ def curve_panels(source: Source) -> list[dict[str, Any]]:
         ]
         panels.append({"heading": heading, "n": _most(source, kind), "chart": curve_panel(heading, curves, bands)})
     return panels
+
+
+def curve_table(source: Source) -> Table:
+    """The numbers behind :func:`curve_panels`."""
+    rows = []
+    for heading, kind in source.groups():
+        for variant in source.variants:
+            curve = success_curve(source.of(variant, kind), source.own_criterion)
+            for scale, *found in zip(SCALES, curve.shares, curve.low, curve.high, strict=True):
+                value = Estimate(*(100.0 * number for number in found), curve.n)
+                rows.append([heading, variant, str(curve.n), f"{scale:g}", Figure(value)])
+    return Table(["kind", "variant", "n", "thresholds ×", "success %"], rows)
 
 
 def idle_references(source: Source) -> list[str]:

@@ -13,7 +13,7 @@ import tomli_w
 
 from polyfold.analysis import Results, table
 from polyfold.analysis._columns import columns_of
-from polyfold.analysis._notes import REFERENCES, noise_floor
+from polyfold.analysis._notes import INTERVALS, REFERENCES, noise_floor
 from polyfold.logs._disk.files import write_atomically
 from polyfold.logs._records import MetricRecord
 from polyfold.types import Threshold
@@ -24,6 +24,7 @@ from polyfold.viz._report._figures import (
     cause_rows,
     cause_table,
     curve_panels,
+    curve_table,
     headline,
     idle_references,
     legend,
@@ -34,7 +35,7 @@ from polyfold.viz._report._figures import (
 )
 from polyfold.viz._report._gallery import LIMIT, gallery
 from polyfold.viz._report._source import Source, open_source
-from polyfold.viz._report._tabular import comparison_html, table_html
+from polyfold.viz._report._tabular import comparison_html, download, table_html
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 ASSETS = Path(__file__).parent
@@ -118,6 +119,7 @@ def _content(source: Source) -> dict[str, Any]:
         "criteria": {name: _bounds(source, bounds) for name, bounds in source.results.run.criteria.items()},
         "bounded": [threshold.metric for threshold in source.own_criterion],
         "reference": REFERENCES[study.reference],
+        "intervals": INTERVALS,
         "configuration": _toml(study.model_dump(mode="json")),
         **(_figures(source, others) if source.records else {}),
     }
@@ -144,6 +146,12 @@ def _figures(source: Source, others: list[str]) -> dict[str, Any]:
         "half": _bounds(source, [scaled(threshold, 0.5) for threshold in source.own_criterion]),
         "causes": {"legend": legend(cause_names(source)), "rows": cause_rows(source)},
         "cause_table": table_html(cause_table(source), 2),
+        "data": {
+            "success": download(table(results, columns), "success"),
+            "thresholds": download(curve_table(source), "thresholds"),
+            "failures": download(cause_table(source), "failures"),
+            "time": download(time_table(source), "time"),
+        },
         "times": {"legend": legend(stage_names(source)), "rows": time_rows(source)},
         "time_table": table_html(time_table(source), 1),
         "memory": max(memory, default=None),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Sequence
 
 from markupsafe import Markup
@@ -15,6 +16,14 @@ def comparison_html(results: Results, first: str, others: Sequence[str], columns
     tables = [(variant, compare(results, variant, first, columns)) for variant in others]
     cells: list[list[Cell]] = [[variant, *row] for variant, made in tables for row in made.cells]
     return table_html(Table(["variant", *tables[0][1].headers], cells), 2, differences=True)
+
+
+def download(table: Table, name: str) -> Markup:
+    """A link that saves a table's numbers as ``name``.csv; they are in the page itself."""
+    content = b64encode(f"{table.csv()}\n".encode()).decode()
+    return Markup(
+        '<a class="data" download="{name}.csv" href="data:text/csv;charset=utf-8;base64,{}">{name}.csv</a>'
+    ).format(content, name=name)
 
 
 def table_html(table: Table, columns_of_text: int, differences: bool = False) -> Markup:

@@ -1,4 +1,5 @@
 import base64
+import csv
 import hashlib
 import html
 import json
@@ -73,10 +74,43 @@ def test_every_variant_kind_and_section_is_there(full_run):
         assert wanted in page.text
     ids = {found["id"] for _, found in page.elements if "id" in found}
     assert {"success", "comparison", "thresholds", "failures", "time", "gallery", "made"} <= ids
-    assert {found["href"][1:] for found in page.all("a")} <= ids, "links lead somewhere on the page"
+    inner = {found["href"][1:] for found in page.all("a") if "download" not in found}
+    assert inner <= ids, "links lead somewhere on the page"
     assert len(page.all("svg", **{"class": "panel"})) == 3, "square, tshirt and all"
     assert "100.0 [51.0, 100.0]" in page.text, "intervals stand beside means"
     assert "−100.0 [−100.0, −7.0]" in page.text, "so do paired differences"
+
+
+def test_the_numbers_behind_every_chart_can_be_saved(full_run):
+    page = Page(report_html(full_run))
+    saved = {found["download"]: found["href"] for found in page.all("a") if "download" in found}
+    assert set(saved) == {f"{name}.csv" for name in ("success", "thresholds", "failures", "time")}
+    rows = {}
+    for name, link in saved.items():
+        kind, content = link.split(",", 1)
+        assert kind == "data:text/csv;charset=utf-8;base64"
+        rows[name] = list(csv.DictReader(base64.b64decode(content).decode().splitlines()))
+    results = open_results(full_run)
+    whole = next(row for row in rows["success.csv"] if (row["variant"], row["kind"]) == ("ours", "all"))
+    succeeded = [record.succeeded for record in results.of("ours")]
+    assert float(whole["success %"]) == pytest.approx(100 * sum(succeeded) / len(succeeded), abs=1e-3)
+    as_it_stands = [
+        row
+        for row in rows["thresholds.csv"]
+        if (row["kind"], row["variant"], row["thresholds ×"]) == ("all", "ours", "1")
+    ]
+    assert [row["success %"] for row in as_it_stands] == [whole["success %"]]
+
+
+def test_one_kind_of_interval_is_spoken_of(full_run):
+    text = Page(report_html(full_run)).text
+    assert "bootstrap" not in text
+    assert text.count("Wilson") == 1
+
+
+def test_the_pictures_can_be_skipped(full_run):
+    text = report_html(full_run)
+    assert text.index('href="#made">Skip') < text.index('class="cards"')
 
 
 def test_nothing_is_fetched_and_only_our_own_script_and_style_run(full_run):
