@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -148,9 +149,9 @@ class Episode:
         """The episode as plain data, as ``episode.json`` and ``polyfold fold --json`` have it."""
         return view_of(self, "summary")
 
-    def show(self) -> NDArray[np.uint8]:
-        """The filmstrip, uint8, shape (H, W, 3)."""
-        return view_of(self, "filmstrip")
+    def show(self, path: str | Path | None = None) -> NDArray[np.uint8]:
+        """The filmstrip, uint8, shape (H, W, 3); also written to a ``path``: PNG, or PDF or SVG for papers."""
+        return view_of(self, "filmstrip", path)
 
     def show_result(self) -> NDArray[np.uint8]:
         """The last picture with the ideal outline dashed over it, uint8, shape (H, W, 3)."""

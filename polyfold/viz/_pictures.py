@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from html import escape
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +21,13 @@ from polyfold.viz._draw._saving import png
 
 
 @makes(Episode, "filmstrip")
-def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
-    """One panel per fold, then the result beside the ideal, uint8, shape (H, W, 3)."""
+def filmstrip_of(episode: Episode, path: str | Path | None = None) -> NDArray[np.uint8]:
+    """One panel per fold, then the result beside the ideal, uint8, shape (H, W, 3).
+
+    Args:
+        episode: what to show.
+        path: file to write: PNG, or PDF or SVG for papers, in which lines and words stay sharp at any size.
+    """
     result = shown(episode, episode.final_state)
     before = [episode.initial_state, *(step.after for step in episode.steps)]
     return filmstrip(
@@ -30,6 +36,7 @@ def filmstrip_of(episode: Episode) -> NDArray[np.uint8]:
         heading=f"{episode.instruction} ({episode.garment.name})",
         result_caption=result_caption(episode),
         ideal_outline=_ideal_outline(episode),
+        path=path,
         result_shown=result,
         sides=() if result is None else sides_of(episode.garment),
     )

@@ -42,6 +42,29 @@ def test_filmstrip_shows_what_a_step_did(rgb, scene, fold_line, action):
     assert (bare[panel] != full[panel]).any()
 
 
+def test_a_filmstrip_for_a_paper_keeps_words_as_words(rgb, scene, fold_line, action, tmp_path):
+    frames = frames_of(2, rgb, scene, fold_line, action)
+    written = []
+    for name in ("strip.svg", "again.svg", "strip.pdf"):
+        strip = viz.filmstrip(frames, rgb, "Fold it for $5 & more.", "IoU 0.95", scene.model.outline(), tmp_path / name)
+        written.append((tmp_path / name).read_bytes())
+    svg = written[0].decode()
+    for words in ("Fold it for $5 &amp; more.", "2. fold part 1 to the left", "fold line, teeth on the lifted side"):
+        assert f">{words}</text>" in svg
+    assert f'viewBox="0 0 {0.75 * strip.shape[1]:g} {0.75 * strip.shape[0]:g}"' in svg, "a pixel is 1/96 inch"
+    assert written[1] == written[0], "what is alike is the same file"
+    assert written[2].startswith(b"%PDF")
+
+
+def test_a_picture_can_be_written_as_shapes_too(rgb, scene, fold_line, action, tmp_path):
+    drawn = viz.overlay(rgb, scene, fold_line, action, path=tmp_path / "new" / "picture.svg")
+    assert drawn.shape == rgb.shape
+    assert (tmp_path / "new" / "picture.svg").read_text().count("<path") > 30
+    viz.overlay(rgb, scene, path=tmp_path / "picture.png")
+    with Image.open(tmp_path / "picture.png") as written:
+        assert written.size == (400, 400)
+
+
 def test_long_texts_are_wrapped_and_cut_but_never_widen_the_page(rgb):
     short = viz.filmstrip([viz.Frame(rgb, title="x", caption="x")], rgb, "x", "x")
     long = viz.filmstrip([viz.Frame(rgb, title=LONG, caption=LONG)], rgb, LONG, "x" * 300)

@@ -114,6 +114,17 @@ def test_value_map_colours_low_dark_and_high_bright(rgb):
     assert (viz.value_map(rgb, np.zeros((0, 2)), []) == rgb).all()
 
 
+def test_a_map_has_a_colour_bar_where_there_is_room(rgb):
+    points, values = np.array([(50, 50), (100, 50)], float), [0.25, 0.5]
+    corner = np.s_[300:, 340:]
+    large = viz.value_map(rgb, points, values)
+    assert changed(rgb, large)[corner].sum() > 800
+    bar = large[310:386, 385].astype(int).sum(axis=-1)
+    assert (np.diff(bar) <= 0).all(), "the highest value on top"
+    assert bar[0] > bar[-1] + 200
+    assert (viz.value_map(rgb, points, values, zoom=0.5)[150:, 170:] == viz.overlay(rgb, zoom=0.5)[150:, 170:]).all()
+
+
 def test_polygon_pictures_show_both_sides_and_all_names(rgb, model, tmp_path):
     plain = viz.polygon_picture(model)
     assert plain.shape == (400, 400, 3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,6 +11,60 @@ from numpy.typing import ArrayLike, NDArray
 from polyfold.viz._draw._style import INK, PAPER, Colour, font
 
 Image = NDArray[np.uint8]
+
+
+class Surface(Protocol):
+    """What shapes are drawn on: pixels (:class:`Canvas`) or a page of shapes (``VectorCanvas``)."""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the result [px]."""
+        ...
+
+    def length(self, pixels: float) -> float:
+        """A length of the result [px] in pixels of the picture given."""
+        ...
+
+    def line(self, points: ArrayLike, colour: Colour, width: float, dash: float = 0.0, opacity: float = 1.0) -> None:
+        """A polyline with round ends, shape (N, 2), dashed where ``dash`` [px] is given."""
+
+    def fill(self, polygon: ArrayLike, colour: Colour, opacity: float = 1.0) -> None:
+        """A filled polygon, shape (N, 2)."""
+
+    def tint(self, mask: NDArray[np.bool_], colour: Colour, opacity: float) -> None:
+        """Colour laid over a mask of the picture given, shape (H, W)."""
+
+    def disc(self, centre: ArrayLike, radius: float, colour: Colour) -> None:
+        """A filled disc."""
+
+    def text(self, text: str, at: ArrayLike, size: int, colour: Colour, anchor: str) -> None:
+        """One line of text at a point of the picture given; ``anchor`` as in Pillow."""
+
+
+class Drawing(Protocol):
+    """A picture and what is drawn over it."""
+
+    @property
+    def rgb(self) -> Image:
+        """The picture, uint8, shape (H, W, 3)."""
+        ...
+
+    @property
+    def zoom(self) -> float:
+        """Size of the result relative to the picture."""
+        ...
+
+    @property
+    def shown(self) -> Image | None:
+        """What is shown in the picture's place, the same view at another size."""
+        ...
+
+    def on(self, surface: Surface) -> None:
+        """Draw what is over the picture."""
+
+    def image(self) -> Image:
+        """All of it as pixels."""
+        ...
 
 
 class Canvas:
@@ -36,6 +91,11 @@ class Canvas:
         self._image = picture.resize((size[0] * self.OVERSAMPLE, size[1] * self.OVERSAMPLE), Pillow.Resampling.NEAREST)
         self._scale = np.array(size) / (width, height) * self.OVERSAMPLE
 
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the result [px]."""
+        return self._image.width // self.OVERSAMPLE, self._image.height // self.OVERSAMPLE
+
     def image(self) -> Image:
         """The picture with all that was drawn, uint8, shape (zoom H, zoom W, 3); untouched pixels are unchanged."""
         return np.asarray(self._image.reduce(self.OVERSAMPLE))
@@ -47,7 +107,7 @@ class Canvas:
     def line(self, points: ArrayLike, colour: Colour, width: float, dash: float = 0.0, opacity: float = 1.0) -> None:
         """A polyline with round ends, shape (N, 2), dashed where ``dash`` [px] is given."""
         at = self._to_image(points)
-        pieces = _dashes(at, dash * self.OVERSAMPLE) if dash else [at]
+        pieces = dashes(at, dash * self.OVERSAMPLE) if dash else [at]
         self._paint(pieces, colour, opacity, width * self.OVERSAMPLE)
 
     def fill(self, polygon: ArrayLike, colour: Colour, opacity: float = 1.0) -> None:
@@ -68,6 +128,14 @@ class Canvas:
         x, y = self._to_image(centre)[0]
         r = radius * self.OVERSAMPLE
         ImageDraw.Draw(self._image).ellipse((x - r, y - r, x + r, y + r), fill=colour)
+
+    def text(self, text: str, at: ArrayLike, size: int, colour: Colour, anchor: str) -> None:
+        """One line of text at a point of the picture given; ``anchor`` as in Pillow."""
+        from PIL import ImageDraw
+
+        x, y = self._to_image(at)[0]
+        draw = ImageDraw.Draw(self._image)
+        draw.text((x, y), text, fill=colour, font=font(size * self.OVERSAMPLE), anchor=anchor)
 
     def _to_image(self, points: ArrayLike) -> NDArray[np.float64]:
         return (np.asarray(points, float).reshape(-1, 2) + 0.5) * self._scale - 0.5
@@ -109,7 +177,7 @@ def _draw_shape(draw, shape: NDArray, fill, width: float | None) -> None:
         draw.ellipse((x - r, y - r, x + r, y + r), fill=fill)
 
 
-def _dashes(points: NDArray, length: float) -> list[NDArray]:
+def dashes(points: NDArray, length: float) -> list[NDArray]:
     """Pieces of a polyline, each about ``length`` long with a gap of the same length; it starts and ends with one."""
     steps = np.hypot(*np.diff(points, axis=0).T)
     position = np.concatenate([[0.0], np.cumsum(steps)])
@@ -157,6 +225,10 @@ class Page:
         self._image.paste(Pillow.fromarray(np.ascontiguousarray(rgb)), (x, y))
         if frame:
             self._draw.rectangle((x - 1, y - 1, x + width, y + height), outline=frame)
+
+    def drawing(self, drawing: Drawing, x: int, y: int, frame: Colour) -> None:
+        """Put a picture with what is drawn over it."""
+        self.picture(drawing.image(), x, y, frame)
 
     def text(
         self, text: str, x: float, y: float, size: int, colour: Colour = INK, bold: bool = False, anchor: str = "la"

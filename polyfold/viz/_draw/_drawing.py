@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from polyfold.geometry import FoldLine, signed_distance, span_on_mask
 from polyfold.geometry._areas import covered
 from polyfold.types import Action, ActionMap, Scene
-from polyfold.viz._draw._canvas import Canvas
-from polyfold.viz._draw._style import ARMS, FOLD_LINE, GOAL, MAP, PAPER, POLYGON, Colour
+from polyfold.viz._draw._canvas import Surface
+from polyfold.viz._draw._style import ARMS, FOLD_LINE, GOAL, INK, MAP, PAPER, POLYGON, Colour
 
 if TYPE_CHECKING:
     from polyfold.polygon import FoldedModel
@@ -21,8 +21,13 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+BAR_WIDTH, BAR_HEIGHT, BAR_STEPS = 10, 84, 42
+"""Of the colour bar of an action map [px]."""
+ROOM_FOR_BAR = 240
+"""Smaller pictures [px] have none."""
 
-def draw_model(canvas: Canvas, model: FoldedModel) -> None:
+
+def draw_model(canvas: Surface, model: FoldedModel) -> None:
     """The fitted polygon: outlines solid, creases dashed, vertices as dots; hidden ones fainter and hollow."""
     hidden, visible = _edges_by_visibility(model.facets())
     for points, crease in hidden:
@@ -67,7 +72,7 @@ def _polylines(shape) -> list[Floats]:
     return [np.array(part.coords) for part in parts if part.geom_type == "LineString" and part.length > 1.0]
 
 
-def draw_outline(canvas: Canvas, outline: ArrayLike, colour: Colour = GOAL, dash: float = 5.0) -> None:
+def draw_outline(canvas: Surface, outline: ArrayLike, colour: Colour = GOAL, dash: float = 5.0) -> None:
     """A closed outline [px], shape (N, 2), such as the ideal result: dashed."""
     outline = np.asarray(outline, float)
     closed = np.vstack([outline, outline[:1]])
@@ -75,31 +80,54 @@ def draw_outline(canvas: Canvas, outline: ArrayLike, colour: Colour = GOAL, dash
     canvas.line(closed, colour, 1.8, dash=dash)
 
 
-def draw_action_map(canvas: Canvas, action_map: ActionMap) -> None:
+def draw_action_map(canvas: Surface, action_map: ActionMap) -> None:
     """Places to pick as discs, dark blue for the lowest value, yellow for the highest, which lies on top."""
     points, values = (np.asarray(part, float) for part in action_map)
     finite = np.isfinite(values)
     points, values = points[finite], values[finite]
     for point in points:
         canvas.disc(point, 4.2, PAPER)
+    if not len(values):
+        return
+    low, high = float(values.min()), float(values.max())
     for index in np.argsort(values):
-        canvas.disc(points[index], 3.2, _map_colour(float(values[index]), float(values.min()), float(values.max())))
+        share = 0.5 if high <= low else (float(values[index]) - low) / (high - low)
+        canvas.disc(points[index], 3.2, _map_colour(share))
+    if min(canvas.size) >= ROOM_FOR_BAR:
+        _draw_colour_bar(canvas, low, high)
 
 
-def _map_colour(value: float, low: float, high: float) -> Colour:
-    share = 0.5 if high <= low else (value - low) / (high - low)
+def _draw_colour_bar(canvas: Surface, low: float, high: float) -> None:
+    """The map's colours from the lowest value, below, to the highest, in the picture's lower right corner."""
+    unit = canvas.length(1.0)
+    right, bottom = (side * unit for side in canvas.size)
+    left, top = right - (BAR_WIDTH + 8) * unit, bottom - (BAR_HEIGHT + 10) * unit
+    step = BAR_HEIGHT * unit / BAR_STEPS
+    canvas.fill(_rectangle(left - unit, top - unit, (BAR_WIDTH + 2) * unit, BAR_STEPS * step + 2 * unit), PAPER)
+    for number in range(BAR_STEPS):
+        at = top + (BAR_STEPS - 1 - number) * step
+        canvas.fill(_rectangle(left, at, BAR_WIDTH * unit, step), _map_colour(number / (BAR_STEPS - 1)))
+    for value, at in ((high, top + 5 * unit), (low, bottom - 15 * unit)):
+        canvas.text(f"{value:.3g}", (left - 4 * unit, at), 11, INK, "rm")
+
+
+def _rectangle(left: float, top: float, width: float, height: float) -> Floats:
+    return np.array([(left, top), (left + width, top), (left + width, top + height), (left, top + height)])
+
+
+def _map_colour(share: float) -> Colour:
     stops = np.array(MAP, float)
     at = share * (len(stops) - 1)
     red, green, blue = (round(float(np.interp(at, np.arange(len(stops)), stops[:, c]))) for c in range(3))
     return red, green, blue
 
 
-def draw_lifted(canvas: Canvas, fold_line: FoldLine, scene: Scene) -> None:
+def draw_lifted(canvas: Surface, fold_line: FoldLine, scene: Scene) -> None:
     """The cloth that a fold line lifts: tinted."""
     canvas.tint(scene.mask & _left_pixels(fold_line, scene.mask.shape), FOLD_LINE, 0.22)
 
 
-def draw_fold_line(canvas: Canvas, fold_line: FoldLine, scene: Scene | None = None) -> None:
+def draw_fold_line(canvas: Surface, fold_line: FoldLine, scene: Scene | None = None) -> None:
     """The directed fold line: an arrow with teeth on the side that is lifted.
 
     With a scene the line is drawn where it crosses the cloth and a little beyond.
@@ -151,7 +179,7 @@ def _arrowhead(tip: Floats, along: Floats, length: float, half_width: float) -> 
     return np.array([tip, back + across * half_width, tip - along * length * 0.74, back - across * half_width])
 
 
-def draw_action(canvas: Canvas, action: Action) -> None:
+def draw_action(canvas: Surface, action: Action) -> None:
     """Picks as discs and places as tips of arrows that curve away from each other, one colour per arm."""
     curves = [
         _curve(pick, place, side) for pick, place, side in zip(action.picks, action.places, _bends(action), strict=True)
@@ -184,7 +212,7 @@ def _curve(pick: Floats, place: Floats, side: Floats) -> Floats:
     return (1 - t) ** 2 * pick + 2 * t * (1 - t) * control + t**2 * place
 
 
-def _draw_arrow(canvas: Canvas, curve: Floats, colour: Colour, halo: float) -> None:
+def _draw_arrow(canvas: Surface, curve: Floats, colour: Colour, halo: float) -> None:
     length = canvas.length(15)
     to_tip = np.hypot(*(curve - curve[-1]).T)
     along = curve[-1] - _at_distance(curve, to_tip, length)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, ActionMap, Scene
 from polyfold.viz._draw._canvas import Page, line_height, text_width, wrapped
-from polyfold.viz._draw._overlays import overlay
+from polyfold.viz._draw._overlays import Overlay
 from polyfold.viz._draw._saving import save
 from polyfold.viz._draw._style import ARMS, FAINT, FOLD_LINE, GOAL, INK, LIFTED, MAP, POLYGON, RULE, Colour
+from polyfold.viz._draw._vector import FORMATS, VectorPage
 
 Image = NDArray[np.uint8]
 
@@ -22,6 +24,7 @@ PANEL, GAP, MARGIN = 400, 26, 26
 HEADING, TITLE, CAPTION = 24, 17, 15
 
 
+_Page = TypeVar("_Page", Page, VectorPage)
 _Sign = tuple[str, str, Colour]
 """A line of the legend: sign, meaning and colour."""
 
@@ -53,11 +56,16 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class _Panel:
-    """A finished picture with the lines of text above and below it."""
+    """A picture with the lines of text above and below it."""
 
-    picture: Image
+    picture: Overlay
     title: list[str]
     caption: list[str]
+
+    @property
+    def height(self) -> int:
+        """Of the picture [px]."""
+        return round(self.picture.rgb.shape[0] * self.picture.zoom)
 
 
 def filmstrip(
@@ -81,7 +89,7 @@ def filmstrip(
         heading: the instruction.
         result_caption: how it came out, such as ``IoU 0.953, 4.2 mm``.
         ideal_outline: where the cloth should lie [px], shape (N, 2), dashed over the result.
-        path: PNG to write.
+        path: file to write: PNG, or PDF or SVG for papers, in which lines and words stay sharp at any size.
         result_title: what stands over the last panel.
         columns: most panels in a row.
         result_shown: what is shown in the last picture's place, the same view at another size.
@@ -94,15 +102,18 @@ def filmstrip(
     panels.append(_result_panel(Frame(result_rgb, shown=result_shown), result_title, result_caption, ideal_outline))
     rows = [panels[i : i + columns] for i in range(0, len(panels), columns)]
     signs = [("■", name, colour) for name, colour in sides]
-    page = _lay_out(rows, heading, [*signs, *_legend(frames, ideal_outline is not None)])
-    if path is not None:
+    entries = [*signs, *_legend(frames, ideal_outline is not None)]
+    page = _lay_out(Page, rows, heading, entries).image()
+    if path is not None and Path(path).suffix in FORMATS:
+        _lay_out(VectorPage, rows, heading, entries).save(path)
+    elif path is not None:
         save(page, path)
     return page
 
 
 def _step_panel(number: int, frame: Frame) -> _Panel:
     zoom = PANEL / max(frame.rgb.shape[:2])
-    picture = overlay(
+    picture = Overlay(
         frame.rgb,
         frame.scene,
         frame.fold_line,
@@ -116,11 +127,11 @@ def _step_panel(number: int, frame: Frame) -> _Panel:
 
 
 def _result_panel(frame: Frame, title: str, caption: str, ideal_outline: ArrayLike | None) -> _Panel:
-    picture = overlay(frame.rgb, outline=ideal_outline, zoom=PANEL / max(frame.rgb.shape[:2]), shown=frame.shown)
+    picture = Overlay(frame.rgb, outline=ideal_outline, zoom=PANEL / max(frame.rgb.shape[:2]), shown=frame.shown)
     return _Panel(picture, wrapped(title, TITLE, PANEL, bold=True), wrapped(caption, CAPTION, PANEL, most=6))
 
 
-def _lay_out(rows: list[list[_Panel]], heading: str, entries: list[_Sign]) -> Image:
+def _lay_out(sheet: type[_Page], rows: list[list[_Panel]], heading: str, entries: list[_Sign]) -> _Page:
     width = 2 * MARGIN + max(len(row) for row in rows) * (PANEL + GAP) - GAP
     heading_lines = wrapped(heading, HEADING, width - 2 * MARGIN, bold=True, most=3)
     top = MARGIN + (len(heading_lines) * line_height(HEADING) + 14 if heading_lines else 0)
@@ -128,7 +139,7 @@ def _lay_out(rows: list[list[_Panel]], heading: str, entries: list[_Sign]) -> Im
     legend = _legend_rows(entries, width - 2 * MARGIN + 24)
     legend_height = len(legend) * line_height(CAPTION) + 12 if legend else 0
     height = top + sum(heights) + (len(rows) - 1) * GAP + legend_height + MARGIN - 8
-    page = Page(width, height)
+    page = sheet(width, height)
     page.lines(heading_lines, MARGIN, MARGIN - 4, HEADING, INK, bold=True)
     y = top
     for row, row_height in zip(rows, heights, strict=True):
@@ -136,7 +147,7 @@ def _lay_out(rows: list[list[_Panel]], heading: str, entries: list[_Sign]) -> Im
         y += row_height + GAP
     if legend:
         _lay_legend(page, legend, MARGIN, y - GAP + 12)
-    return page.image()
+    return page
 
 
 def _row_height(row: list[_Panel]) -> int:
@@ -145,20 +156,20 @@ def _row_height(row: list[_Panel]) -> int:
 
 
 def _pictures_height(row: list[_Panel]) -> int:
-    return max(panel.picture.shape[0] for panel in row)
+    return max(panel.height for panel in row)
 
 
 def _titles_height(row: list[_Panel]) -> int:
     return max(len(panel.title) for panel in row) * line_height(TITLE) + 8
 
 
-def _lay_row(page: Page, row: list[_Panel], y: int) -> None:
+def _lay_row(page: Page | VectorPage, row: list[_Panel], y: int) -> None:
     below_titles = y + _titles_height(row)
     below_pictures = below_titles + _pictures_height(row)
     for column, panel in enumerate(row):
         x = MARGIN + column * (PANEL + GAP)
         page.lines(panel.title, x, below_titles - 8 - len(panel.title) * line_height(TITLE), TITLE, INK, bold=True)
-        page.picture(panel.picture, x, below_titles, frame=RULE)
+        page.drawing(panel.picture, x, below_titles, RULE)
         page.lines(panel.caption, x, below_pictures + 8, CAPTION, FAINT)
         if column:
             page.text("›", x - GAP / 2, (below_titles + below_pictures) / 2, 30, FAINT, anchor="mm")
@@ -207,7 +218,7 @@ def _sign_width(entry: _Sign) -> float:
     return text_width(sign, CAPTION, bold=True) + 6 + text_width(meaning, CAPTION) + 24
 
 
-def _lay_legend(page: Page, rows: list[list[_Sign]], x: float, y: float) -> None:
+def _lay_legend(page: Page | VectorPage, rows: list[list[_Sign]], x: float, y: float) -> None:
     for number, row in enumerate(rows):
         at, top = x, y + number * line_height(CAPTION)
         for sign, meaning, colour in row:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from pathlib import Path
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, ActionMap, Observation, Scene
-from polyfold.viz._draw._canvas import Canvas
+from polyfold.viz._draw._canvas import Canvas, Surface
 from polyfold.viz._draw._drawing import (
     draw_action,
     draw_action_map,
@@ -16,6 +19,8 @@ from polyfold.viz._draw._drawing import (
     draw_model,
     draw_outline,
 )
+from polyfold.viz._draw._saving import save
+from polyfold.viz._draw._vector import FORMATS, VectorPage
 
 Image = NDArray[np.uint8]
 
@@ -30,6 +35,7 @@ def overlay(
     action_map: ActionMap | None = None,
     zoom: float = 1.0,
     shown: Image | None = None,
+    path: str | Path | None = None,
 ) -> Image:
     """Draw polygon, fold line and picks and places over a picture.
 
@@ -45,24 +51,61 @@ def overlay(
         action_map: places to pick and their values, as a policy's ``action_map`` gives them; see :func:`value_map`.
         zoom: size of the result relative to the picture.
         shown: what is shown in the picture's place, the same view at another size.
+        path: file to write: PNG, or PDF or SVG, in which lines and words stay sharp at any size.
 
     Returns:
         The picture, uint8, shape (zoom H, zoom W, 3); pixels that nothing covers are unchanged at zoom 1.
     """
-    canvas = Canvas(picture.rgb if isinstance(picture, Observation) else picture, zoom, shown)
-    if scene is not None and scene.model is not None:
-        draw_model(canvas, scene.model)
-    if outline is not None:
-        draw_outline(canvas, outline)
-    if fold_line is not None and scene is not None:
-        draw_lifted(canvas, fold_line, scene)
-    if action_map is not None:
-        draw_action_map(canvas, action_map)
-    if fold_line is not None:
-        draw_fold_line(canvas, fold_line, scene)
-    if action is not None:
-        draw_action(canvas, action)
-    return canvas.image()
+    rgb = picture.rgb if isinstance(picture, Observation) else picture
+    drawn = Overlay(rgb, scene, fold_line, action, outline, action_map, zoom, shown)
+    if path is not None:
+        save_drawing(drawn, path)
+    return drawn.image()
+
+
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """What :func:`overlay` draws, with its arguments, to be drawn on any surface."""
+
+    rgb: Image
+    scene: Scene | None = None
+    fold_line: FoldLine | None = None
+    action: Action | None = None
+    outline: ArrayLike | None = None
+    action_map: ActionMap | None = None
+    zoom: float = 1.0
+    shown: Image | None = None
+
+    def on(self, surface: Surface) -> None:
+        """Draw what is over the picture."""
+        if self.scene is not None and self.scene.model is not None:
+            draw_model(surface, self.scene.model)
+        if self.outline is not None:
+            draw_outline(surface, self.outline)
+        if self.fold_line is not None and self.scene is not None:
+            draw_lifted(surface, self.fold_line, self.scene)
+        if self.action_map is not None:
+            draw_action_map(surface, self.action_map)
+        if self.fold_line is not None:
+            draw_fold_line(surface, self.fold_line, self.scene)
+        if self.action is not None:
+            draw_action(surface, self.action)
+
+    def image(self) -> Image:
+        """All of it as pixels, uint8, shape (zoom H, zoom W, 3)."""
+        canvas = Canvas(self.rgb, self.zoom, self.shown)
+        self.on(canvas)
+        return canvas.image()
+
+
+def save_drawing(drawn: Overlay, path: str | Path) -> Path:
+    """Write a picture with what is drawn over it: PDF and SVG with shapes, else pixels as PNG."""
+    if Path(path).suffix not in FORMATS:
+        return save(drawn.image(), path)
+    height, width = drawn.rgb.shape[:2]
+    page = VectorPage(round(width * drawn.zoom), round(height * drawn.zoom))
+    page.drawing(drawn, 0, 0)
+    return page.save(path)
 
 
 def value_map(

@@ -91,8 +91,8 @@ def curve_table(source: Source) -> Table:
     for heading, kind in source.groups():
         for variant in source.variants:
             curve = success_curve(source.of(variant, kind), source.own_criterion)
-            for scale, *found in zip(SCALES, curve.shares, curve.low, curve.high, strict=True):
-                value = Estimate(*(100.0 * number for number in found), curve.n)
+            for scale, mean, low, high in zip(SCALES, curve.shares, curve.low, curve.high, strict=True):
+                value = Estimate(100.0 * mean, 100.0 * low, 100.0 * high, curve.n)
                 rows.append([heading, variant, str(curve.n), f"{scale:g}", Figure(value)])
     return Table(["kind", "variant", "n", "thresholds ×", "success %"], rows)
 
