@@ -26,6 +26,7 @@ def kept(function: Callable[..., Any]) -> Any:
     from numba import config, njit
 
     if getattr(config, "DISABLE_JIT", 0):  # for debuggers and coverage
+        _mention_plain_python()
         return function
     try:
         dispatcher = njit(cache=True, error_model="numpy")(function)
@@ -72,6 +73,14 @@ def _tell(done: Event) -> None:
     while not done.wait(1.0):
         print(f"\rpolyfold: {what}: {time.monotonic() - begun:.0f} s", end="", file=sys.stderr, flush=True)
     print(f"\rpolyfold: {what}: {time.monotonic() - begun:.0f} s", file=sys.stderr, flush=True)
+
+
+@cache
+def _mention_plain_python() -> None:
+    warnings.warn(
+        "NUMBA_DISABLE_JIT is set: the cloth folds in plain Python, hundreds of times slower; unset it",
+        stacklevel=3,
+    )
 
 
 @cache

@@ -5,7 +5,7 @@ import warnings
 from importlib import import_module
 
 import pytest
-from polyfold_xpbd.compiling import _mention_no_place, interruptible, kept
+from polyfold_xpbd.compiling import _mention_no_place, _mention_plain_python, interruptible, kept
 
 
 @pytest.fixture
@@ -62,7 +62,10 @@ def test_compiling_that_takes_long_is_said_at_a_terminal(double, monkeypatch, lo
 
 def test_where_nothing_is_compiled_functions_stay_as_they_are(double, monkeypatch):
     monkeypatch.setattr("numba.config.DISABLE_JIT", 1)
-    assert kept(double) is double
+    _mention_plain_python.cache_clear()
+    with pytest.warns(UserWarning, match="NUMBA_DISABLE_JIT is set: .* hundreds of times slower"):
+        assert kept(double) is double
+    assert quietly(kept, double) is double, "it is said once"
 
 
 def test_an_index_that_a_full_disk_emptied_does_not_end_a_run(double, tmp_path, monkeypatch):
