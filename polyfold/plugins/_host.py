@@ -19,6 +19,7 @@ import pluggy
 from polyfold.errors import ConfigError, PluginError, did_you_mean, validation_problem
 from polyfold.errors._hints import misplaced_truth
 from polyfold.plugins import hookspecs
+from polyfold.plugins._border import faultless, guarded
 from polyfold.plugins._calling import call, implementations
 from polyfold.plugins._catalog import Catalog, Component, Plugin, Problem, refuse_reserved
 from polyfold.plugins._discovery import disabled_by_environment, discover, new_manager
@@ -198,11 +199,16 @@ class Host:
                 (:class:`polyfold.plugins.interfaces.UsesComponents`).
 
         Raises:
-            PluginError: see :meth:`find`.
+            PluginError: see :meth:`find`; or it fails, or lacks what its kind must have.
             ConfigError: if a parameter is unknown or has an impossible value; the message names it.
         """
         cls, config = self.configured(kind, name, params)
-        return cls(**components) if config is None else cls(config, **components)
+        name = name.partition(":")[0]
+        by_hand = (kind, name) in self._by_hand
+        home = "that was registered by hand" if by_hand else f"of the plugin {self.find(kind, name).plugin.label}"
+        owner = f"the {singular(kind)} {name!r} {home}"
+        made = faultless(lambda: cls(**components) if config is None else cls(config, **components), owner)
+        return guarded(made, kind, owner)
 
     def create_chosen(self, experiment: Experiment, field: str) -> Any:
         """Construct the component that an experiment names in ``field``, for example ``"policy"``.
