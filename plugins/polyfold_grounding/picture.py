@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold.errors import GroundingError
 from polyfold.geometry import FoldLine, contour_of
 from polyfold.plugins.interfaces import Grounding
 from polyfold.polygon import Template
@@ -33,6 +34,8 @@ class ImageGrounding:
         fold_line: FoldLine | None = None,
     ) -> Scene:
         """Ground one picture; see :class:`polyfold.plugins.interfaces.Grounding`."""
+        if not mask.any():
+            raise GroundingError("no cloth is visible; lay the garment where the camera sees it")
         height, width = mask.shape
         text = json.dumps({"garment": template.kind, "image": {"width": width, "height": height}})
         contour = contour_of(mask)

@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from polyfold import plugins, viz
+from polyfold import plugins
 from polyfold.api._loaders import garment as named_garment
 from polyfold.config import USUAL, ComponentSpec, Experiment
 from polyfold.errors import ConfigError
@@ -143,7 +143,7 @@ def save(episode: Episode, folder: Path, moments: Sequence[Moment] = (), started
     record = fold_record(episode, started, datetime.now(UTC)).model_copy(update={"out": str(folder)})
     write_atomically(folder / "episode.json", record.model_dump_json(indent=2) + "\n")
     write_atomically(folder / "transcript.jsonl", transcript_lines(episode.calls))
-    viz.save(viz.filmstrip_of(episode), folder / "filmstrip.png")
+    episode.show(folder / "filmstrip.png")
     (folder / "fold.gif").unlink(missing_ok=True)  # an earlier fold's
     if moments:
         write_film(episode, moments, folder / "fold.gif", GIF_RATE)

@@ -22,8 +22,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw the sheet."""
-    from polyfold import viz
     from polyfold.viz._draw._cloth import cloth_picture
+    from polyfold.viz._draw._sheets import garment_sheet
 
     experiment = experiment_from(arguments)
     simulator = plugins.create_chosen(experiment, "simulator")
@@ -36,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
             pictures[garment.name] = cloth_picture(state, garment, zoom=1.0) if state.known else seen.rgb
     simulator.close()
     arguments.out.parent.mkdir(parents=True, exist_ok=True)
-    viz.garment_sheet(pictures, columns=arguments.count, path=arguments.out)
+    garment_sheet(pictures, columns=arguments.count, path=arguments.out)
     print(f"{len(pictures)} garments: {arguments.out}")
     for kind in kinds:
         made_of = plugins.make_fabric(experiment.fabric, kind).name

@@ -1,13 +1,13 @@
 """Pictures of episodes and of results."""
 
+from polyfold.viz import _pictures as _pictures
 from polyfold.viz._draw._animation import gif
 from polyfold.viz._draw._filmstrips import Frame, filmstrip
 from polyfold.viz._draw._overlays import overlay, value_map
 from polyfold.viz._draw._polygons import grounding_picture, polygon_picture
 from polyfold.viz._draw._saving import png, save
-from polyfold.viz._draw._sheets import Card, garment_sheet, score_sheet
+from polyfold.viz._draw._sheets import Card, score_sheet
 from polyfold.viz._draw._shown import animate, show
-from polyfold.viz._pictures import filmstrip_of
 from polyfold.viz._plots import PALETTE
 from polyfold.viz._provider_figure import provider_figure
 
@@ -17,8 +17,6 @@ __all__ = [
     "Frame",
     "animate",
     "filmstrip",
-    "filmstrip_of",
-    "garment_sheet",
     "gif",
     "grounding_picture",
     "overlay",

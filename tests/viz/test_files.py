@@ -12,6 +12,7 @@ from PIL import Image
 from polyfold import viz
 from polyfold.errors import ConfigError
 from polyfold.viz._draw._filmstrips import _legend
+from polyfold.viz._draw._sheets import garment_sheet
 
 LONG = "fold the lower hem of the garment up to the shoulder seams along the horizontal line through the middle " * 3
 
@@ -120,7 +121,7 @@ def test_gif_refuses_frames_it_cannot_play(tmp_path):
 
 def test_garment_sheet_shows_every_picture(tmp_path):
     colours = {f"tshirt-{i:04d}": np.full((50, 80, 3), (20 * i, 100, 200 - 20 * i), np.uint8) for i in range(9)}
-    page = viz.garment_sheet(colours, "Nine garments", tmp_path / "sheet.png", columns=3, side=100)
+    page = garment_sheet(colours, "Nine garments", tmp_path / "sheet.png", columns=3, side=100)
     flat = page.reshape(-1, 3)
     for rgb in colours.values():
         assert (flat == rgb[0, 0]).all(1).sum() > 0.5 * 100 * 62

@@ -1,0 +1,96 @@
+"""What groundings are held to."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+from polyfold.errors import GroundingError
+from polyfold.plugins._fabrics import garment_template
+from polyfold.testing._checks import checks
+from polyfold.testing._materials import changed, kept, picture, scene, scene_of, upward
+from polyfold.testing._subjects import Subject
+from polyfold.types import Scene
+
+
+def _ground(subject: Subject, seen: Scene, *more: Any) -> Scene:
+    return subject.make().ground(picture(seen), seen.mask, garment_template(seen.kind), *more)
+
+
+@checks("groundings", "what it says to a language model is strict JSON with places")
+def _text(subject: Subject) -> None:
+    found = _ground(subject, scene("square"))
+    try:
+        told = json.loads(found.text, parse_constant=lambda name: 1 / 0)
+    except (ValueError, ZeroDivisionError):
+        told = None
+    subject.require(
+        isinstance(told, dict), "ground", f"scene.text is no strict JSON object: {found.text[:60]!r}",
+        "write json.dumps({...}, allow_nan=False)",
+    )  # fmt: skip
+    assert isinstance(told, dict)
+    missing = [name for name in ("garment", "image") if name not in told]
+    subject.require(not missing, "ground", f"scene.text lacks {missing}", "see polyfold.Scene for what it must hold")
+    subject.require(
+        "vertices" in told or "keypoints" in told or found.picture is not None, "ground",
+        "scene.text names no place, and there is no scene.picture",
+        "give vertices: name -> [x, y] [px], or keypoints as a list, or a picture",
+    )  # fmt: skip
+    subject.require(
+        found.shown, "ground", "scene.shown is empty", "it chooses the prompt: say what text and picture hold"
+    )
+
+
+@checks("groundings", "the scene is of the picture")
+def _fits(subject: Subject) -> None:
+    seen = scene("square")
+    found = _ground(subject, seen)
+    subject.require(
+        found.image_size == seen.image_size, "ground", f"image_size is {found.image_size}, not {seen.image_size}",
+        "it is (width, height)",
+    )  # fmt: skip
+    off = np.abs(found.contour.min(0) - seen.contour.min(0)).max() if len(found.contour) else np.inf
+    subject.require(
+        off <= 3.0,
+        "ground",
+        f"scene.contour begins {off:.0f} px off the cloth",
+        "contour_of(mask) gives it, (x, y), y down",
+    )
+
+
+@checks("groundings", "a fold is followed")
+def _follows(subject: Subject) -> None:
+    flat = scene("square")
+    first = _ground(subject, flat)
+    assert flat.model is not None
+    line = upward(flat.model)
+    second = _ground(subject, scene_of(flat.model.fold(line)), first, line)
+    subject.require(second.kind == "square", "ground", f"the kind became {second.kind!r}", "take it from the template")
+
+
+@checks("groundings", "the same picture gives the same scene, and is left as it is")
+def _pure(subject: Subject) -> None:
+    seen = scene("square")
+    before = kept(seen)
+    first, second = _ground(subject, seen), _ground(subject, seen)
+    subject.require(first.text == second.text, "ground", "a second look differs", "keep no state, and draw nothing")
+    part = changed(before, seen)
+    subject.require(not part, "ground", f"it writes into the {part} that it is handed", f"copy it first: {part}.copy()")
+
+
+@checks("groundings", "no cloth, and cloth at the border, end in a scene or a GroundingError")
+def _odd(subject: Subject) -> None:
+    seen = scene("square")
+    nothing, cut = np.zeros_like(seen.mask), np.zeros_like(seen.mask)
+    cut[:, : seen.mask.shape[1] // 2] = seen.mask[:, seen.mask.shape[1] // 2 :]
+    for name, mask in (("an empty mask", nothing), ("cloth that the border cuts off", cut)):
+        try:
+            found = subject.make().ground(picture(seen), mask, garment_template("square"))
+        except GroundingError:
+            continue
+        subject.require(
+            mask.any() and np.isfinite(found.contour).all(), "ground", f"{name} becomes a scene with nothing in it",
+            "raise GroundingError('too little cloth is visible')",
+        )  # fmt: skip
