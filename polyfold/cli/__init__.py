@@ -31,6 +31,7 @@ VERBS = {
     "report": ("polyfold.cli.report", "write an evaluation as one HTML page"),
     "prompt": ("polyfold.cli.prompt", "show what a language model is told"),
     "plugins": ("polyfold.cli.plugins", "list the installed plugins and their components"),
+    "new-plugin": ("polyfold.cli.new_plugin", "write a package with a component of any kind, whose tests pass"),
     "check": ("polyfold.cli.check", "hold a plugin's components to what their kinds promise"),
 }
 

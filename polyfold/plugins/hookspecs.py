@@ -72,7 +72,7 @@ def singular(kind: str) -> str:
 
 def plural(field: str) -> str:
     """``policy`` to ``policies``: the kind of component that an experiment names in a field."""
-    return "policies" if field == "policy" else f"{field}s"
+    return {"policy": "policies", "criterion": "criteria"}.get(field, f"{field}s")
 
 
 @hookspec

@@ -108,3 +108,10 @@ def test_observer_error_is_recorded_and_the_run_goes_on(polyfold):
 def test_plugin_adds_a_verb(polyfold):
     assert "say hello" in polyfold("--help", plugins=["verbose"]).stdout
     assert polyfold("greet", "--name", "cloth", plugins=["verbose"]).stdout == "hello cloth\n"
+
+
+def test_the_example_does_what_policies_promise(polyfold):
+    checked = polyfold("check", "polyfold-example", plugins=["example"])
+    assert checked.returncode == 0, checked.stdout + checked.stderr
+    assert "policy middle" in checked.stdout
+    assert checked.stdout.rstrip().endswith("9 checks, 0 faults")
