@@ -108,6 +108,9 @@ def test_a_kind_that_names_no_fabric_is_made_of_poplin():
 
         kind = "napkin"
 
+        def template(self):
+            return plugins.create("garments", "square").template()
+
         def generate(self, seed, edge_length=0.01):
             return plugins.create("garments", "square").generate(seed, edge_length)
 

@@ -139,7 +139,7 @@ def _edge_line(edge: str, shape: Shape, share: float) -> tuple[FoldLine, str]:
     pairs = [
         (shape.flat[name], shape.flat[other])
         for name in edge_vertices(shape.flat, edge)
-        if (other := partner(name, edge)) != name and other in shape.flat
+        if (other := partner(name, edge, shape.flat)) is not None
     ]
     if not pairs:
         raise NotUnderstoodError(f"the model does not show the {edge} edge and the one opposite to it")

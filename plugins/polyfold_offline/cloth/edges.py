@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 
 CREASE = re.compile(r"fold(\d+)_(start|end)")
 """Names of the ends of creases."""
 
 _EDGE_WORDS = {
     "bottom": ("hem", "bottom_left", "bottom_right", "leg_outer"),
-    "top": ("shoulder", "top_left", "top_right", "waist"),
+    "top": ("shoulder", "strap", "top_left", "top_right", "waist"),
 }
+_PARTNERS = (
+    ("hem", "shoulder"), ("bottom", "top"), ("leg_outer", "waist"), ("hem", "waist"), ("hem", "strap_outer"),
+)  # fmt: skip
+"""Beginnings of the names of vertices below and above each other."""
 
 
 def edge_vertices(points: Iterable[str], edge: str) -> list[str]:
@@ -28,13 +32,14 @@ def edge_vertices(points: Iterable[str], edge: str) -> list[str]:
     return [name for name in names if name.startswith(ends)]
 
 
-def partner(name: str, edge: str) -> str:
-    """The vertex that mirrors ``name`` on the opposite edge, by name."""
+def partner(name: str, edge: str, points: Container[str]) -> str | None:
+    """Which of the named points mirrors ``name`` on the opposite edge, by name; None where none does."""
     if edge in ("left", "right"):
         other = "right" if edge == "left" else "left"
-        return f"{name[: -len(edge)]}{other}"
-    for low, high in (("hem", "shoulder"), ("bottom", "top"), ("leg_outer", "waist"), ("hem", "waist")):
+        found = f"{name[: -len(edge)]}{other}"
+        return found if found != name and found in points else None
+    for low, high in _PARTNERS:
         a, b = (low, high) if edge == "bottom" else (high, low)
-        if name.startswith(a):
-            return b + name[len(a) :]
-    return name
+        if name.startswith(a) and (found := b + name[len(a) :]) in points:
+            return found
+    return None

@@ -46,7 +46,13 @@ class Garment:
     @property
     def spoken(self) -> str:
         """The kind in words."""
-        return {"tshirt": "t-shirt", "pants": "pair of pants"}.get(self.kind, f"{self.kind.replace('_', ' ')} cloth")
+        known = {
+            "tshirt": "t-shirt",
+            "pants": "pair of pants",
+            "square": "square cloth",
+            "rectangle": "rectangle cloth",
+        }
+        return known.get(self.kind, self.kind.replace("_", " "))
 
 
 def _size(told: Any) -> tuple[float, float] | None:

@@ -17,6 +17,7 @@ from polyfold_offline.cloth.folds import (
 )
 from polyfold_offline.cloth.garment import Garment
 from polyfold_offline.meaning.program import FRACTIONS, Piece, Program
+from polyfold_offline.reading.tokens import FAMILY_WORDS
 
 
 def fold_of_subgoal(sentence: str, garment: Garment) -> Fold | None:
@@ -132,7 +133,7 @@ _OF_STRIP = re.compile(
 
 
 def _nouns(garment: Garment) -> tuple[str, ...]:
-    return _NOUNS.get(garment.family, (garment.spoken, garment.kind.replace("_", " "), garment.kind))
+    return _NOUNS.get(garment.family, (garment.spoken, garment.kind, FAMILY_WORDS["other"]))
 
 
 _CLOTHS = ("cloth", "towel", "napkin", "handkerchief", "scarf", "flannel")

@@ -19,6 +19,7 @@ from polyfold_offline.reading.network import Network
 from polyfold_offline.reading.orders import fold_of_subgoal, program_of_order
 from polyfold_offline.reading.pieces import Pieces
 from polyfold_offline.reading.text import Read, take_lengths
+from polyfold_offline.reading.tokens import FAMILIES, FAMILY_WORDS
 
 
 @dataclass(frozen=True)
@@ -227,7 +228,14 @@ _AS_SURE = 0.05
 
 
 def _in_known_words(sentence: str, garment: Garment) -> str:
-    """The sentence with parts that only this garment's template names replaced by the edge that they lie on."""
+    """The sentence in words that the reader has learned.
+
+    A kind of garment that it does not know is called as the family that it is of; parts that only the garment's
+    template names become the edge that they lie on.
+    """
+    if garment.kind not in FAMILIES:
+        own = re.escape(garment.kind).replace("_", "[ _-]?")
+        sentence = re.sub(rf"\b(?:pair of )?{own}s?\b", FAMILY_WORDS[garment.family], sentence, flags=re.IGNORECASE)
     if garment.family != "other":
         return sentence
     for part in sorted(garment.parts, key=len, reverse=True):

@@ -17,6 +17,8 @@ from polyfold_offline.meaning.program import (
 )
 
 FAMILIES = ("square", "rectangle", "tshirt", "pants", "other")
+FAMILY_WORDS = {"square": "cloth", "rectangle": "cloth", "tshirt": "shirt", "pants": "pants", "other": "garment"}
+"""What the reader calls a garment of a kind that it does not know, by its family."""
 
 TOKENS = (
     *(f"family {name}" for name in FAMILIES),
