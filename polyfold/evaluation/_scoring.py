@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from polyfold.errors import PluginError
 from polyfold.evaluation._criteria import needed_scale, succeeded
 from polyfold.evaluation._references import Reference
 from polyfold.plugins.interfaces import Metric
@@ -48,18 +47,9 @@ def compare_end(
     if not references:
         return Comparison(dict.fromkeys(metrics, math.nan), None, dict.fromkeys(criteria, False))
     scores = [
-        {name: _score(name, metric, end, reference) for name, metric in metrics.items()} for reference in references
+        {name: metric.score(end, [reference.outcome]) for name, metric in metrics.items()} for reference in references
     ]
     first = next(iter(criteria.values()))
     nearest = min(range(len(scores)), key=lambda index: needed_scale(scores[index], first))
     success = {name: any(succeeded(values, bounds) for values in scores) for name, bounds in criteria.items()}
     return Comparison(scores[nearest], references[nearest], success)
-
-
-def _score(name: str, metric: Metric, end: Outcome, reference: Reference) -> float:
-    try:
-        return metric.score(end, [reference.outcome])
-    except Exception as error:
-        raise PluginError(
-            f"the metric {name!r} failed ({type(error).__name__}: {error}); update or disable its plugin"
-        ) from error

@@ -30,11 +30,13 @@ class Owed:
         arguments: names of what it is handed.
         returns: what it must return, in words.
         wrong: says what is wrong with what it returned.
+        calls_back: whether it calls functions that it is handed, whose errors are not its own.
     """
 
     arguments: tuple[str, ...]
     returns: str
     wrong: Wrong
+    calls_back: bool = False
 
 
 def guarded(component: Any, kind: str, owner: str) -> Any:
@@ -86,6 +88,8 @@ class _Guard:
         except PASSED_ON:
             raise
         except Exception as error:
+            if self._owed.calls_back:
+                raise
             raise PluginError(f"{self._owner} failed in {self._name}: {_told(error)}") from error
         if wrong := self._owed.wrong(returned, arguments):
             raise PluginError(f"{self._owner} returned {wrong} from {self._name}; it must return {self._owed.returns}")
@@ -221,7 +225,7 @@ METHODS: Mapping[str, Mapping[str, Owed]] = {
         "plan": Owed(
             ("picks", "places"), "a plan, or Infeasible", _is("polyfold.plugins.hardware", "RobotPlan", "Infeasible")
         ),
-        "execute": Owed(("plan", "watch"), "nothing", _anything),
+        "execute": Owed(("plan", "watch"), "nothing", _anything, calls_back=True),
         "park": Owed((), "nothing", _anything),
         "stop": Owed((), "nothing", _anything),
     },
