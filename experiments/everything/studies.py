@@ -123,6 +123,10 @@ def _groundings(results: Results) -> Sequence[Section]:
     return [*_by_wording(results), *_pairs(("polygon", "keypoints"))(results)]
 
 
+def _wardrobe(results: Results) -> Sequence[Section]:
+    return [*_table(results), ("By task:", polyfold.table(results, groups="task").markdown())]
+
+
 def _robustness(results: Results) -> Sequence[Section]:
     """Each disturbance beside the same policy undisturbed."""
     pairs = [(name, name.partition(", ")[0]) for name in results.study.variants if ", " in name]
@@ -161,5 +165,6 @@ STUDIES = (
     StudyStep("planners", 0.5, _planners),
     StudyStep("groundings", 0.4, _groundings),
     StudyStep("floor", 0.3, _table),
+    StudyStep("wardrobe", 0.2, _wardrobe),
 )
 """In the order in which they are run. Rows of learned policies wait for weights trained in cloth of today's fabrics."""

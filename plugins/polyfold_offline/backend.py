@@ -58,7 +58,7 @@ class OfflineLLM:
             f"A {garment.spoken} lies flat on the table. The instruction takes {count} fold{'s' * (count > 1)}.",
             *folding.notes,
         ]
-        return _answer(reasoning, {"subgoals": [say(fold, garment.kind) for fold in folding.folds]})
+        return _answer(reasoning, {"subgoals": [say(fold, garment.said_as) for fold in folding.folds]})
 
     def _fold_line(self, question: Question) -> str:
         line, reasoning = self._planned_line(question)
@@ -88,7 +88,7 @@ class OfflineLLM:
             crease = crease_of(fold, Shape.of_model(model, shape.size, 100 * shape.px_per_cm or None))
             model = model.fold(crease.line)
             if number >= question.done:
-                subgoal = say(fold, garment.kind)
+                subgoal = say(fold, garment.said_as)
                 reasoning.append(f"{subgoal}: {crease.reasoning}")
                 told.append({"subgoal": subgoal, "fold_line": _line_content(crease.line)})
         return _answer(reasoning, {"plan": told})

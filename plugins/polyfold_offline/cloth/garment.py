@@ -44,6 +44,11 @@ class Garment:
         return self.family in ("square", "rectangle")
 
     @property
+    def said_as(self) -> str:
+        """The kind whose words for edges are used: its own, or for kinds that are not known the family's."""
+        return self.kind if self.kind in ("square", "rectangle", "tshirt", "pants") else self.family
+
+    @property
     def spoken(self) -> str:
         """The kind in words."""
         known = {

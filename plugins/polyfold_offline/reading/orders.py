@@ -25,7 +25,7 @@ def fold_of_subgoal(sentence: str, garment: Garment) -> Fold | None:
     words = " ".join(sentence.split()).rstrip(".")
     if strip := _STRIP.fullmatch(words):
         return Fold("band", strip["edge"], cm=float(strip["cm"]))
-    return next((fold for fold in _sayable(garment) if say(fold, garment.kind) == words), None)
+    return next((fold for fold in _sayable(garment) if say(fold, garment.said_as) == words), None)
 
 
 _PLAIN = re.compile(
@@ -60,7 +60,7 @@ def _program_of_garment(words: str, garment: Garment) -> Program | None:
 def _program_of_edges(words: str, garment: Garment) -> Program | None:
     order = _PLAIN.fullmatch(words)
     for edge in EDGES if order else ():
-        names, others = ({f"{e} edge", f"{e} side", edge_name(garment.kind, e)} for e in (edge, OPPOSITE_EDGE[edge]))
+        names, others = ({f"{e} edge", f"{e} side", edge_name(garment.said_as, e)} for e in (edge, OPPOSITE_EDGE[edge]))
         if order and order["part"].lower() in names and order["other"].lower() in others:
             return (Piece("half", edge[0].upper()),)
     return None

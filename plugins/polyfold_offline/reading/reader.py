@@ -105,7 +105,7 @@ class Reader:
         nearest = next((reading for reading in readings if reading.folding is not None), None)
         if nearest is None or nearest.folding is None:
             return reason
-        told = ", then ".join(say(fold, garment.kind) for fold in nearest.folding.folds)
+        told = ", then ".join(say(fold, garment.said_as) for fold in nearest.folding.folds)
         return f"{reason}; did you mean: {told}?"
 
     def _doubtful_part(self, sentence: str, garment: Garment) -> str:
