@@ -88,3 +88,12 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
+
+
+def _show_values_in_jupyter() -> None:
+    from polyfold._jupyter import register
+
+    register()
+
+
+_show_values_in_jupyter()

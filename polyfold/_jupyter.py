@@ -1,0 +1,33 @@
+"""How values show themselves where IPython runs: registered by name, so that nothing is imported before it is shown."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+SHOWN = (
+    ("polyfold.garments._garment", "Garment"),
+    ("polyfold.geometry._fold_line", "FoldLine"),
+    ("polyfold.polygon._folded", "FoldedModel"),
+    ("polyfold.polygon._template", "Template"),
+    ("polyfold.types._decisions", "Action"),
+    ("polyfold.types._perception", "Observation"),
+    ("polyfold.types._perception", "Scene"),
+)
+"""Home and name of each class that is a picture: what is drawn stands in :mod:`polyfold.viz._values`."""
+
+
+def register() -> None:
+    """Have IPython show these values as pictures; nothing where it does not run."""
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    if shell is not None:
+        for module, name in SHOWN:
+            shell.display_formatter.formatters["image/png"].for_type_by_name(module, name, _png)
+
+
+def _png(value: Any) -> bytes:
+    from polyfold.viz._draw._saving import png
+    from polyfold.viz._values import picture_of
+
+    return png(picture_of(value))
