@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import argparse
+import inspect
 import json
 import shlex
 from typing import Any
 
 from polyfold import plugins
-from polyfold.plugins.hookspecs import KINDS
+from polyfold.config import Experiment
+from polyfold.errors import PluginError, did_you_mean
+from polyfold.plugins._traits import Configurable
+from polyfold.plugins.hookspecs import KINDS, singular
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
+    parser.add_argument("show", nargs="?", choices=["show"], help="one component and its parameters")
+    parser.add_argument("name", nargs="?", help="of the component, such as csam+caso")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.add_argument("--traceback", action="store_true", help="show the tracebacks of broken plugins")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """List plugins and components. A broken plugin is listed, not fatal."""
+    """List plugins and components, or show one. A broken plugin is listed, not fatal."""
+    if arguments.show is not None:
+        return _show(arguments.name)
     listing = _listing()
     if arguments.json:
         print(json.dumps(listing, indent=2))
@@ -44,6 +52,42 @@ def run(arguments: argparse.Namespace) -> int:
             if arguments.traceback and problem["traceback"]:
                 print("      " + problem["traceback"].rstrip().replace("\n", "\n      "))
     return 0
+
+
+def _show(name: str | None) -> int:
+    """Everything that is called so: what it is, who made it, and what can be set."""
+    if name is None:
+        raise PluginError("plugins show needs a component's name, such as csam+caso; polyfold plugins lists them")
+    kinds = [kind for kind in KINDS if name in plugins.names(kind)]
+    if not kinds:
+        known = sorted({one for kind in KINDS for one in plugins.names(kind)})
+        raise PluginError(f"no component is called {name!r}; {did_you_mean(name, known)}")
+    for kind in kinds:
+        component = plugins.find(kind, name)
+        print(f"{singular(kind)} {name}: {component.summary}  ({component.plugin.label})")
+        if kind != "tasks":
+            print("\n".join(f"  {line}" for line in _about(plugins.component_class(kind, name), singular(kind))))
+    return 0
+
+
+def _about(cls: Any, field: str) -> list[str]:
+    """The class in its own words, then a line a parameter."""
+    words = inspect.cleandoc(cls.__doc__ or "").split("\n\n")[0].splitlines()
+    if not isinstance(cls, Configurable):
+        return [*words, "no parameters"]
+    # What an experiment has none of is set where it is named, such as a camera in a simulator's table.
+    place = f"--set {field}." if field in Experiment.model_fields else ""
+    parameters = [
+        f"{place}{name}={_default(one)}  {one.description or ''}" for name, one in cls.Config.model_fields.items()
+    ]
+    return [*words, *parameters]
+
+
+def _default(field: Any) -> str:
+    if field.is_required():
+        return "…"
+    value = field.get_default(call_default_factory=True)
+    return "" if value is None else json.dumps(value, default=str)
 
 
 def _listing() -> dict[str, Any]:
