@@ -316,6 +316,22 @@ def _cells():
         yield Case("cell", content, ("cell", "park", "--config", "FILE"), name="file.toml")
 
 
+def _plugins():
+    for command in (
+        ("check", "nothing-like-it"),
+        ("check", "caso", "--params", "{"),
+        ("check", "caso", "--params", "[1]"),
+        ("check", "caso", "--params", '{"policy other": {}}'),
+        ("plugins", "show"),
+        ("plugins", "show", "cazo"),
+        ("new-plugin", "Upper", "--kind", "policy", "--out", "DIR"),
+        ("new-plugin", "../out", "--kind", "policy", "--out", "DIR"),
+        ("new-plugin", "mine", "--kind", "polcy", "--out", "DIR"),
+        ("new-plugin", "mine", "--kind", "policy", "--out", FILE),
+    ):
+        yield Case("plugin", "", command)
+
+
 def _weights():
     for content, about in (
         (b"", "empty"),
@@ -371,7 +387,7 @@ def _options():
         ("fold",),
         ("fold", "a", "b"),
         ("fold", "it", "--seed", "x"),
-        ("fold", "it", "--garment", "skirt"),
+        ("fold", "it", "--garment", "poncho"),
         ("fold", "it", "--size", "0.004"),
         ("fold", "it", "--mask", "a.png", "--image", "b.png"),
         ("fold", "it", "--keypoints", "a.json"),
@@ -402,7 +418,7 @@ def cases():
     """All of them."""
     makers = (
         _experiments, _studies, _suites, _meshes, _outlines, _pictures, _sheets, _cassettes,
-        _calibrations, _cells, _weights,
+        _calibrations, _cells, _plugins, _weights,
         _data, _runs, _options,
     )  # fmt: skip
     return [case for maker in makers for case in maker()]
