@@ -24,7 +24,7 @@ class Towel:
         corners=CORNERS, top=("top_left", "top_right"), bottom=("bottom_left", "bottom_right"), size=0.8, cyclic=CORNERS
     )
     default_fabric: ClassVar[str] = "terry"
-    also_called: ClassVar[tuple[str, ...]] = ("bath towel", "beach towel", "scarf")
+    also_called: ClassVar[tuple[str, ...]] = ("bath towel", "beach towel")
 
     def template(self) -> Template:
         """The polygon template."""

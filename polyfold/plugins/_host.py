@@ -159,9 +159,13 @@ class Host:
     def _which_garment(self, name: str, known: Sequence[str]) -> str:
         """The kind that people call so, or all kinds with what else they are called; few names are near by chance."""
         also = {kind: tuple(getattr(self._class_if_any(kind), "also_called", ())) for kind in known}
-        for kind, names in also.items():
-            if name.lower().removesuffix("s") in (kind, *(other.removesuffix("s") for other in names)):
-                return f"did you mean {kind!r}?"
+        one = name.lower().removesuffix("s")
+        called = {kind: (kind.removesuffix("s"), *(other.removesuffix("s") for other in also[kind])) for kind in also}
+        # A kind's own name before what else another is called.
+        for names in ({kind: known[:1] for kind, known in called.items()}, called):
+            for kind, known_as in names.items():
+                if one in known_as:
+                    return f"did you mean {kind!r}?"
         if near := get_close_matches(name.lower(), known, n=1, cutoff=0.8):
             return f"did you mean {near[0]!r}?"
         listed = (f"{kind} ({', '.join(names)})" if names else kind for kind, names in also.items())

@@ -112,7 +112,7 @@ def _studies():
         "edge_length = nan",
         "first_seed = -1",
         "sizes = { square = true }",
-        "sizes = { skirt = 0.5 }",
+        "sizes = { poncho = 0.5 }",
         'base = { simulator = { name = "real-cell", camera = "realsense", robot = "pybullet" } }',
         'split = "both"',
         'steps = "many"',
