@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import keyword
 import re
+import sys
 from pathlib import Path
 
+from polyfold import plugins
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.plugins.hookspecs import KINDS, plural, singular
 
@@ -84,6 +87,13 @@ def write_plugin(name: str, kind: str, out: Path) -> Path:
     if not NAME.fullmatch(name) or len(name) > 50:
         raise ConfigError(
             f"{name!r} is no name for a plugin; take lower-case letters, digits and hyphens: polyfold-widest"
+        )
+    if (short := _values(name, kind)["name"]) in plugins.names(kind):
+        raise ConfigError(f"a {singular(kind)} is called {short!r} already; choose another name")
+    package = name.replace("-", "_")
+    if package == "polyfold" or package in sys.stdlib_module_names or keyword.iskeyword(_short(name)):
+        raise ConfigError(
+            f"a package {package!r} would hide Python's own or PolyFold; call it polyfold-{_short(name)}-mine"
         )
     folder = out / name
     if folder.exists():

@@ -71,7 +71,7 @@ def faultless(make: Callable[[], Any], owner: str) -> Any:
         return make()
     except PASSED_ON:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise PluginError(f"{owner} can't be constructed: {_told(error)}") from error
 
 
@@ -87,7 +87,7 @@ class _Guard:
             returned = self._method(*arguments, **named)
         except PASSED_ON:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             if self._owed.calls_back:
                 raise
             raise PluginError(f"{self._owner} failed in {self._name}: {_told(error)}") from error
@@ -110,7 +110,7 @@ def _refuse_uncallable(method: Callable[..., Any], name: str, owed: Owed, owner:
         ) from None
 
 
-def _told(error: Exception) -> str:
+def _told(error: BaseException) -> str:
     """An unexpected error in one line, with the place it comes from."""
     place = traceback.extract_tb(error.__traceback__)[-1]
     said = " ".join(str(error).split())

@@ -185,10 +185,10 @@ class Host:
         module, _, attribute = component.target.partition(":")
         try:
             return getattr(import_module(module), attribute)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise PluginError(
                 f"the {singular(kind)} {name!r} of {component.plugin.label} can't be loaded from "
-                f"{component.target!r} ({type(error).__name__}: {error}); reinstall or update that plugin"
+                f"{component.target!r} ({type(error).__name__}: {error}); update or mend that plugin"
             ) from error
 
     def create(self, kind: str, name: str, params: Mapping[str, Any] | None = None, **components: Any) -> Any:

@@ -20,7 +20,7 @@ from polyfold.plugins._fabrics import garment_template
 from polyfold.polygon import FoldedModel
 from polyfold.types import Message, Observation, Reply, Scene
 
-SIDE = 400
+SIDE, OBLONG = 400, 360
 CLOTH, TABLE = (66, 133, 180), (236, 236, 232)
 TURN = np.deg2rad(13.0)
 
@@ -75,6 +75,12 @@ def picture(seen: Scene) -> Observation:
     depth = np.full((SIDE, SIDE), camera.elevation, np.float32)
     depth[seen.mask] -= np.float32(0.001)
     return Observation(_colours(seen.mask), depth, camera)
+
+
+def oblong(seen: Observation) -> Observation:
+    """A picture without its last rows, in which width and height can't be confused; the cloth is all there."""
+    camera = Camera(seen.camera.width, OBLONG, seen.camera.focal, seen.camera.elevation)
+    return Observation(seen.rgb[:OBLONG].copy(), seen.depth[:OBLONG].copy(), camera)
 
 
 def _colours(mask: NDArray[np.bool_]) -> NDArray[np.uint8]:

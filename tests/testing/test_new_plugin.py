@@ -67,6 +67,10 @@ def test_its_source_is_as_tidy_as_ours(tmp_path):
         (["Widest", "--kind", "policy"], "'Widest' is no name for a plugin; take lower-case letters"),
         (["../up", "--kind", "policy"], "is no name for a plugin"),
         (["widest", "--kind", "polcy"], "there is no kind 'polcy' of component; did you mean 'policy'?"),
+        (["polyfold", "--kind", "policy"], "would hide Python's own or PolyFold"),
+        (["class", "--kind", "policy"], "would hide Python's own or PolyFold; call it polyfold-class-mine"),
+        (["json", "--kind", "metric"], "would hide Python's own or PolyFold"),
+        (["polyfold-polygon", "--kind", "grounding"], "a grounding is called 'polygon' already; choose another name"),
         (["there", "--kind", "policy"], "is there already; choose another name, or remove it"),
     ],
 )

@@ -100,6 +100,39 @@ class TableForCloth:
         return ~plugins.create("segmenters", "colour").segment(observation)
 
 
+class UndoesItself:
+    def segment(self, observation):
+        observation.rgb[:] = observation.rgb[..., ::-1]
+        return plugins.create("segmenters", "colour").segment(observation)
+
+
+class HeightForWidth:
+    def ground(self, observation, mask, template, previous=None, fold_line=None):
+        scene = plugins.create("groundings", "polygon").ground(observation, mask, template, previous, fold_line)
+        return replace(scene, image_size=scene.image_size[::-1])
+
+
+class SwappedContour:
+    def ground(self, observation, mask, template, previous=None, fold_line=None):
+        scene = plugins.create("groundings", "polygon").ground(observation, mask, template, previous, fold_line)
+        return replace(scene, contour=scene.contour[:, ::-1])
+
+
+class WritesIntoTheMask:
+    def ground(self, observation, mask, template, previous=None, fold_line=None):
+        scene = plugins.create("groundings", "polygon").ground(observation, mask, template, previous, fold_line)
+        mask[:200] = False
+        return scene
+
+
+class LeavesPython:
+    def __init__(self):
+        raise SystemExit("bye")
+
+    def act(self, fold_line, scene, rng):
+        """Never."""
+
+
 class LooseJson:
     def ground(self, observation, mask, template, previous=None, fold_line=None):
         scene = plugins.create("groundings", "polygon").ground(observation, mask, template, previous, fold_line)
@@ -212,6 +245,11 @@ WRONG = [
     ("policies", UndescribedParameters, "arms has no description. write Field(default=…, description='… [unit]')"),
     ("policies", SilentParameters, "it takes parameters that it does not know in silence"),
     ("segmenters", TableForCloth, "the mask of a blue square on a pale table covers it to 0.00 (IoU). True is cloth"),
+    ("policies", LeavesPython, "can't be constructed: SystemExit: bye"),
+    ("segmenters", UndoesItself, "it writes into observation.rgb. copy it first: observation.rgb.copy()"),
+    ("groundings", HeightForWidth, "image_size is (360, 400), not (400, 360). it is (width, height)"),
+    ("groundings", SwappedContour, "px off the cloth. contour_of(mask) gives it, (x, y), y down"),
+    ("groundings", WritesIntoTheMask, "it writes into the mask that it is handed. copy it first: mask.copy()"),
     ("groundings", LooseJson, "scene.text is no strict JSON object"),
     ("planners", BelievesAnything, "and the plan is None. check the answer; raise PlanError"),
     ("planners", NeverGivesUp, "it asked 40 times and did not give up; bound the repairs"),

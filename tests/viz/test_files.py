@@ -57,6 +57,13 @@ def test_a_filmstrip_for_a_paper_keeps_words_as_words(rgb, scene, fold_line, act
     assert written[2].startswith(b"%PDF")
 
 
+def test_an_ending_that_is_no_picture_s_is_refused(rgb, tmp_path):
+    for write in (viz.overlay, lambda rgb, path: viz.filmstrip([], rgb, path=path)):
+        with pytest.raises(ConfigError, match=r"end it in \.png, \.pdf or \.svg"):
+            write(rgb, path=tmp_path / "e.html")
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_picture_can_be_written_as_shapes_too(rgb, scene, fold_line, action, tmp_path):
     drawn = viz.overlay(rgb, scene, fold_line, action, path=tmp_path / "new" / "picture.svg")
     assert drawn.shape == rgb.shape

@@ -16,7 +16,7 @@ from polyfold.viz._draw._canvas import Page, line_height, text_width, wrapped
 from polyfold.viz._draw._overlays import Overlay
 from polyfold.viz._draw._saving import save
 from polyfold.viz._draw._style import ARMS, FAINT, FOLD_LINE, GOAL, INK, LIFTED, MAP, POLYGON, RULE, Colour
-from polyfold.viz._draw._vector import FORMATS, VectorPage
+from polyfold.viz._draw._vector import VectorPage, is_vector
 
 Image = NDArray[np.uint8]
 
@@ -104,7 +104,7 @@ def filmstrip(
     signs = [("■", name, colour) for name, colour in sides]
     entries = [*signs, *_legend(frames, ideal_outline is not None)]
     page = _lay_out(Page, rows, heading, entries).image()
-    if path is not None and Path(path).suffix in FORMATS:
+    if path is not None and is_vector(path):
         _lay_out(VectorPage, rows, heading, entries).save(path)
     elif path is not None:
         save(page, path)

@@ -20,7 +20,7 @@ from polyfold.viz._draw._drawing import (
     draw_outline,
 )
 from polyfold.viz._draw._saving import save
-from polyfold.viz._draw._vector import FORMATS, VectorPage
+from polyfold.viz._draw._vector import VectorPage, is_vector
 
 Image = NDArray[np.uint8]
 
@@ -100,7 +100,7 @@ class Overlay:
 
 def save_drawing(drawn: Overlay, path: str | Path) -> Path:
     """Write a picture with what is drawn over it: PDF and SVG with shapes, else pixels as PNG."""
-    if Path(path).suffix not in FORMATS:
+    if not is_vector(path):
         return save(drawn.image(), path)
     height, width = drawn.rgb.shape[:2]
     page = VectorPage(round(width * drawn.zoom), round(height * drawn.zoom))

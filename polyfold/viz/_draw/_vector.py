@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from polyfold.errors import ConfigError
 from polyfold.logs._disk.files import write_atomically
 from polyfold.viz._draw._canvas import Drawing, dashes, line_height
 from polyfold.viz._draw._style import INK, PAPER, Colour
@@ -24,6 +25,14 @@ POINTS = 72 / DPI
 ASCENT = 0.928
 """How far DejaVu Sans stands above its baseline, in its size."""
 _ANCHORS = {"l": "left", "m": "center", "r": "right"}
+
+
+def is_vector(path: str | Path) -> bool:
+    """Whether a file is one of shapes. Raises ConfigError for an ending that is no picture's that we write."""
+    ending = Path(path).suffix.lower()
+    if ending not in (*FORMATS, ".png"):
+        raise ConfigError(f"{str(path)!r} is no name for a picture; end it in .png, .pdf or .svg")
+    return ending in FORMATS
 
 
 class VectorPage:
@@ -74,7 +83,9 @@ class VectorPage:
         settings: Any = {"pdf.fonttype": 42, "svg.fonttype": "none", "svg.hashsalt": "polyfold"}
         dates: dict[str, Any] = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
         with rc_context(settings):
-            self._figure.savefig(buffer, format=path.suffix[1:], metadata=dates[path.suffix], dpi=3 * DPI)
+            self._figure.savefig(
+                buffer, format=path.suffix[1:].lower(), metadata=dates[path.suffix.lower()], dpi=3 * DPI
+            )
         path.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(path, buffer.getvalue())
         return path
