@@ -87,7 +87,7 @@ class _Guard:
             returned = self._method(*arguments, **named)
         except PASSED_ON:
             raise
-        except (Exception, SystemExit) as error:
+        except Exception as error:
             if self._owed.calls_back:
                 raise
             raise PluginError(f"{self._owner} failed in {self._name}: {_told(error)}") from error

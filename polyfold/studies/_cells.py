@@ -48,7 +48,7 @@ def _check_metrics(study: Study) -> None:
 
 def _check_sizes(study: Study) -> None:
     """Raises ConfigError if a size is given for a kind of garment that the suite has not."""
-    kinds = {task.garment for task in suite(study.suite).entries}
+    kinds = sorted({task.garment for task in suite(study.suite).entries})
     for kind in study.sizes:
         if kind not in kinds:
             raise ConfigError(f"sizes names {kind!r}, of which {study.suite} has no task; {did_you_mean(kind, kinds)}")

@@ -10,7 +10,6 @@ from polyfold_xpbd.ahead.calling import Ahead, digest, type_of
 from polyfold_xpbd.kernels.vectors import vertex_normals
 
 CORNERS = np.array([[0, 1, 2]], np.uint32)
-USE = np.ones((1, 3), np.float32)
 
 
 @pytest.fixture
@@ -42,7 +41,7 @@ def normals():
     def compute(corners=CORNERS):
         x = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0.5]], np.float32)
         found = np.zeros((3, 3), np.float32)
-        assert kernel(x, corners, USE, found) is None
+        assert kernel(x, corners, np.ones(corners.shape, np.float32), found) is None
         np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1.0, rtol=1e-6)
         assert (found[:, 2] > 0.0).all()
         return asked.pop() if asked else "ahead"
