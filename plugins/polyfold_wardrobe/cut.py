@@ -32,6 +32,11 @@ def both_sides(
     return corners
 
 
+def paired(names: Iterable[str]) -> list[Pair]:
+    """Names of what mirrors each other, left first."""
+    return [(name, name.replace("_left", "_right")) for name in names if name.endswith("_left")]
+
+
 def mirrored(pairs: Mapping[Pair, float], rng: np.random.Generator) -> dict[Pair, float]:
     """How far seams bulge [m], the right one's as the left one's but for a fifth; pairs run around the outline."""
     found = {}

@@ -16,7 +16,7 @@ from polyfold.polygon import (
     position_range,
     ratio_range,
 )
-from polyfold_wardrobe.cut import SIDES, Floats, both_sides, mirrored, sewn, turned
+from polyfold_wardrobe.cut import SIDES, Floats, both_sides, mirrored, paired, sewn, turned
 
 NAMES = (
     "hem_left", "armpit_left", "sleeve_bottom_left", "sleeve_top_left", "shoulder_left", "neck_left", "neck_center",
@@ -62,9 +62,7 @@ class LongSleeve:
             descriptions={**told, "neck_center": "center of the neck opening, its lowest point"},
             parts=_parts(),
             canonical_shapes=[_shape(degrees) for degrees in (30.0, 38.0, 46.0)],
-            generator=SymmetricGenerator(
-                NAMES, [(name, name.replace("_left", "_right")) for name in NAMES if name.endswith("_left")]
-            ),
+            generator=SymmetricGenerator(NAMES, paired(NAMES)),
             penalties=[*_body(), *(penalty for side in SIDES for penalty in _sleeve(side)), *_likeness()],
         )
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from polyfold.garments import Garment, Pattern, curved_outline
 from polyfold.polygon import Penalty, SymmetricGenerator, Template, angle_range, position_range, ratio_range
-from polyfold_wardrobe.cut import SIDES, both_sides, mirrored, sewn, turned
+from polyfold_wardrobe.cut import SIDES, both_sides, mirrored, paired, sewn, turned
 
 NAMES = (
     "leg_inner_left", "leg_outer_left", "waist_left", "waist_right", "leg_outer_right", "leg_inner_right", "crotch",
@@ -51,9 +51,7 @@ class Shorts:
                 _shape(waist=0.4, length=0.9, rise=0.6, gap=0.06, leg=0.36),
                 _shape(waist=0.36, length=1.1, rise=0.6, gap=0.04, leg=0.32),
             ],
-            generator=SymmetricGenerator(
-                NAMES, [(name, name.replace("_left", "_right")) for name in NAMES if name.endswith("_left")]
-            ),
+            generator=SymmetricGenerator(NAMES, paired(NAMES)),
             penalties=_penalties(),
             covered=("crotch",),
         )

@@ -16,7 +16,7 @@ from polyfold.polygon import (
     position_range,
     ratio_range,
 )
-from polyfold_wardrobe.cut import SIDES, both_sides, mirrored, sewn, turned
+from polyfold_wardrobe.cut import SIDES, both_sides, mirrored, paired, sewn, turned
 
 NAMES = (
     "hem_left", "underarm_left", "strap_outer_left", "strap_inner_left", "neck_center",
@@ -62,9 +62,7 @@ class TankTop:
             descriptions={**told, "neck_center": "center of the neck opening, its lowest point"},
             parts=_parts(),
             canonical_shapes=[_shape(0.30, 0.22, 0.10), _shape(0.36, 0.25, 0.12)],
-            generator=SymmetricGenerator(
-                NAMES, [(name, name.replace("_left", "_right")) for name in NAMES if name.endswith("_left")]
-            ),
+            generator=SymmetricGenerator(NAMES, paired(NAMES)),
             penalties=_penalties(),
         )
 

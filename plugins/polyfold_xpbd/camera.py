@@ -14,7 +14,7 @@ TABLE = (236, 236, 232)
 """Colour of the table, RGB."""
 SAMPLES = 2
 """Samples per pixel and axis."""
-rasterise, average = ahead("rasterise")(picture.rasterise), ahead("average")(picture.average)
+rasterise, average = ahead("rasterise", picture.rasterise), ahead("average", picture.average)
 
 
 def take_picture(

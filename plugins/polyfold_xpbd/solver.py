@@ -22,7 +22,7 @@ from polyfold_xpbd.model import ClothModel, build_model
 from polyfold_xpbd.stability import bending_lead, bent_normal, time_step
 from polyfold_xpbd.tethers import TetherMap, Tethers
 
-average_normals = ahead("average_normals")(vertex_normals)
+average_normals = ahead("average_normals", vertex_normals)
 
 SLACK = 0.002
 """How far particles may stray from where they were foreseen before near pairs are listed again [m]."""

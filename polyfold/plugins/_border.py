@@ -226,11 +226,20 @@ METHODS: Mapping[str, Mapping[str, Owed]] = {
             ("picks", "places"), "a plan, or Infeasible", _is("polyfold.plugins.hardware", "RobotPlan", "Infeasible")
         ),
         "execute": Owed(("plan", "watch"), "nothing", _anything, calls_back=True),
+        "limits": Owed(("arm",), "an ArmLimits", _is("polyfold.plugins.hardware", "ArmLimits")),
+        "tcp_pose": Owed(("arm",), "a pose, shape (4, 4)", _anything),
+        "joint_state": Owed(("arm",), "angles, shape (N,)", _anything),
+        "move_linear": Owed(("arm", "pose", "speed"), "nothing", _anything),
+        "gripper": Owed(("arm", "closed"), "how wide the hand is [m]", _no_number),
         "park": Owed((), "nothing", _anything),
         "stop": Owed((), "nothing", _anything),
     },
 }
-"""What each kind of component owes, method by method; see :mod:`polyfold.plugins.interfaces`."""
+"""What each kind of component owes, method by method.
+
+As the protocols of :mod:`polyfold.plugins.interfaces` have it, which a test compares: importing these would load numpy
+where components are only made.
+"""
 
 ATTRIBUTES: Mapping[str, Mapping[str, str]] = {
     "agents": {"requires": "what it is handed at the start, such as frozenset({'instruction'})"},

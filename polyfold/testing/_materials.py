@@ -96,32 +96,32 @@ def empty() -> Observation:
 
 
 class Scripted:
-    """A conversation whose other side follows a script; see :class:`polyfold.plugins.interfaces.Conversation`.
+    """A conversation whose other side always says the same; see :class:`polyfold.plugins.interfaces.Conversation`.
 
     Args:
-        replies: texts, or errors to raise, the last one again and again.
+        reply: what it says, or the error that it raises.
+
+    Attributes:
+        asked: how often it was asked.
     """
 
     MOST = 40
 
-    def __init__(self, *replies: Reply | Exception) -> None:
-        self._replies = list(replies)
+    def __init__(self, reply: Reply | Exception) -> None:
+        self._reply = reply
         self.asked = 0
-        self.rejected: list[str] = []
 
     def ask(self, role: str, messages: Sequence[Message], params: Mapping[str, Any] | None = None) -> Reply:
-        """The script's next answer."""
+        """The same again."""
         self.asked += 1
         if self.asked > self.MOST:
             raise AssertionError(f"it asked {self.MOST} times and did not give up; bound the repairs")
-        reply = self._replies.pop(0) if len(self._replies) > 1 else self._replies[0]
-        if isinstance(reply, Exception):
-            raise reply
-        return reply
+        if isinstance(self._reply, Exception):
+            raise self._reply
+        return self._reply
 
     def reject(self, reason: str) -> None:
-        """Take note."""
-        self.rejected.append(reason)
+        """Nothing: it will say the same."""
 
 
 def unanswered() -> Scripted:

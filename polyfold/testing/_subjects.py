@@ -40,7 +40,10 @@ class Subject:
         """Why it can't be tried here; None if it can."""
         if missing := plugins.catalog().components[self.kind][self.name.partition(":")[0]][0].missing_packages():
             return f"needs {', '.join(missing)}"
-        if self.kind == "tasks" or not isinstance(cls := self.cls(), Configurable):
+        cls = self.cls()
+        if self.kind == "simulators" and not getattr(cls, "unattended", True):
+            return "is a real table, which nothing here may move"
+        if not isinstance(cls, Configurable):
             return None
         required = [name for name, field in cls.Config.model_fields.items() if field.is_required()]
         missing = [name for name in required if name not in self.params]
@@ -51,7 +54,9 @@ class Subject:
         return plugins.create(self.kind, self.name, self.params)
 
     def cls(self) -> Any:
-        """Its class."""
+        """Its class; None for a suite of tasks, which is a file."""
+        if self.kind == "tasks":
+            return None
         return plugins.component_class(self.kind, self.name.partition(":")[0])
 
     def require(self, holds: Any, method: str, wrong: str, advice: str) -> None:

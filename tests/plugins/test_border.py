@@ -1,5 +1,6 @@
 """Whatever a component gets wrong, the message names it, its plugin and the method, and says what was expected."""
 
+import inspect
 import re
 
 import numpy as np
@@ -8,7 +9,24 @@ import pytest
 import polyfold
 from polyfold import plugins
 from polyfold.errors import PluginError
+from polyfold.plugins import hardware, interfaces
+from polyfold.plugins._border import METHODS
 from polyfold.types import Action, Observation
+
+PROTOCOLS = {
+    "simulators": interfaces.Simulator, "cameras": hardware.DepthCamera, "robots": hardware.Robot,
+    "segmenters": interfaces.Segmenter, "groundings": interfaces.Grounding, "planners": interfaces.Planner,
+    "policies": interfaces.Policy, "llms": interfaces.LLM, "agents": interfaces.Agent,
+    "garments": interfaces.GarmentKind, "fabrics": interfaces.FabricKind, "metrics": interfaces.Metric,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", PROTOCOLS)
+def test_what_is_owed_is_what_the_protocol_says(kind):
+    methods = {name: found for name, found in vars(PROTOCOLS[kind]).items() if inspect.isfunction(found)}
+    asked = {name: tuple(inspect.signature(found).parameters)[1:] for name, found in methods.items() if name[0] != "_"}
+    assert {name: owed.arguments for name, owed in METHODS[kind].items()} == asked
+    assert set(METHODS) == set(PROTOCOLS)
 
 
 @pytest.fixture

@@ -34,13 +34,13 @@ class Variant(NamedTuple):
 
     Attributes:
         code: the file of it.
-        entry: its name there.
+        kernel: its name there.
         results: how many numbers it returns.
         slots: how many numbers its arguments are.
     """
 
     code: str
-    entry: str
+    kernel: str
     results: int
     slots: int
 
@@ -72,15 +72,11 @@ class Ahead:
         return tuple(slots[: variant.results].tolist()) if variant.results else None
 
 
-def ahead(name: str) -> Callable[[Callable[..., Any]], Any]:
-    """Have a compiled function called as it was compiled ahead of time, under this name, where it was."""
+def ahead(name: str, compiled: Callable[..., Any]) -> Any:
+    """A function that numba compiles, called as it was compiled ahead of time under this name where it was."""
+    from numba import config
 
-    def wrap(compiled: Callable[..., Any]) -> Any:
-        from numba import config
-
-        return compiled if getattr(config, "DISABLE_JIT", 0) else Ahead(compiled, name)
-
-    return wrap
+    return compiled if getattr(config, "DISABLE_JIT", 0) else Ahead(compiled, name)
 
 
 def type_of(argument: Any) -> str:
@@ -127,7 +123,7 @@ def _variants() -> dict[tuple[str, tuple[str, ...]], Variant]:
     if index["digest"] != digest():
         return {}
     return {
-        (one["kernel"], tuple(one["types"])): Variant(one["code"], one["entry"], one["results"], one["slots"])
+        (one["kernel"], tuple(one["types"])): Variant(one["code"], one["kernel"], one["results"], one["slots"])
         for one in index["variants"]
     }
 
@@ -144,7 +140,7 @@ def _machine_code(variant: Variant) -> Callable[[int], None] | None:
 @cache
 def _made(variant: Variant) -> Callable[[int], None] | None:
     engine = _engine(variant.code)
-    return engine and ctypes.CFUNCTYPE(None, ctypes.c_void_p)(engine.get_function_address(variant.entry))
+    return engine and ctypes.CFUNCTYPE(None, ctypes.c_void_p)(engine.get_function_address(variant.kernel))
 
 
 @cache

@@ -54,7 +54,6 @@ done:
   ret ptr %info
 }
 
-
 define void @NRT_incref(ptr %info) {
   %none = icmp eq ptr %info, null
   br i1 %none, label %done, label %add
@@ -109,10 +108,11 @@ def _make() -> None:
                 if made.fndesc.llvm_func_name not in known:
                     known.add(made.fndesc.llvm_func_name)
                     entries.append(_add(whole, name, made))
-        _finish(whole, {entry["entry"] for entry in entries})
+        kernels = [entry["kernel"] for entry in entries]
+        _finish(whole, kernels)
         (FOLDER / code).write_bytes(whole.as_bitcode())
-        index += [{"kernel": entry["entry"], "code": code, **entry} for entry in entries]
-        print(f"{code}: {(FOLDER / code).stat().st_size} bytes, {', '.join(entry['entry'] for entry in entries)}")
+        index += [{"code": code, **entry} for entry in entries]
+        print(f"{code}: {(FOLDER / code).stat().st_size} bytes, {', '.join(kernels)}")
     about = {"digest": digest(), "llvm": ".".join(map(str, llvm.llvm_version_info)), "variants": index}
     INDEX.write_text(json.dumps(about, indent=1) + "\n", encoding="utf-8")
 
@@ -148,16 +148,16 @@ def _compiled_by_folding(guaranteed: bool) -> dict[str, Any]:
     }
 
 
-def _add(whole: Any, entry: str, made: Any) -> dict[str, Any]:
-    """Link what numba ``made`` of a kernel, and its entry, into the ``whole``; what the index says of it."""
+def _add(whole: Any, kernel: str, made: Any) -> dict[str, Any]:
+    """Link what numba ``made`` of a ``kernel``, and its entry, into the ``whole``; what the index says of it."""
     import llvmlite.binding as llvm
 
     whole.link_in(llvm.parse_bitcode(made.library.portable))
     name = made.fndesc.llvm_func_name
     types = [str(parameter.type) for parameter in whole.get_function(name).arguments]
-    whole.link_in(llvm.parse_assembly(_entry(entry, name, types)))
+    whole.link_in(llvm.parse_assembly(_entry(kernel, name, types)))
     return {
-        "entry": entry,
+        "kernel": kernel,
         "types": [_named(one) for one in made.signature.args],
         "results": getattr(made.signature.return_type, "count", 0),
         "slots": len(types) - 2,

@@ -140,4 +140,4 @@ def _kept_under(sources: str) -> Callable[..., tuple[int, int]]:
     return advance
 
 
-advance = ahead("advance")(_kept_under(digest()))
+advance = ahead("advance", _kept_under(digest()))

@@ -7,12 +7,10 @@ from polyfold.testing._checks import EVERY, checks
 from polyfold.testing._materials import without_network
 from polyfold.testing._subjects import Subject
 
-WITHOUT_CLASS = ("tasks",)
-
 
 @checks(EVERY, "it can be made, and each time anew")
 def _can_be_made(subject: Subject) -> None:
-    if subject.kind in WITHOUT_CLASS or getattr(subject.cls(), "uses", ()):
+    if subject.cls() is None or getattr(subject.cls(), "uses", ()):
         return
     with without_network() as asked:
         first, second = subject.make(), subject.make()
@@ -26,7 +24,7 @@ def _can_be_made(subject: Subject) -> None:
 
 @checks(EVERY, "its parameters say what they are")
 def _parameters(subject: Subject) -> None:
-    cls = None if subject.kind in WITHOUT_CLASS else subject.cls()
+    cls = subject.cls()
     if not isinstance(cls, Configurable):
         return
     bare = [name for name, field in cls.Config.model_fields.items() if not field.description]

@@ -1,4 +1,4 @@
-"""What simulators are held to. One that is a real table is only looked at, never moved."""
+"""What simulators are held to; those that are a real table are not tried (:meth:`Subject.lacking`)."""
 
 from __future__ import annotations
 
@@ -20,17 +20,13 @@ COARSE, SIZE = 0.03, 0.3
 
 @contextmanager
 def _laid(subject: Subject) -> Iterator[Any]:
-    """A simulator with a small square on its table; nothing where it would move a robot."""
+    """A simulator with a small square on its table."""
     simulator = subject.make()
     try:
         simulator.reset(plugins.generate_garment("square", 0, COARSE, size=SIZE), 0)
         yield simulator
     finally:
         simulator.close()
-
-
-def _is_real(subject: Subject) -> bool:
-    return not getattr(subject.cls(), "unattended", True)
 
 
 def _diagonal(simulator: Any) -> Action:
@@ -40,8 +36,6 @@ def _diagonal(simulator: Any) -> Action:
 
 @checks("simulators", "its pictures are pictures")
 def _pictures(subject: Subject) -> None:
-    if _is_real(subject):
-        return
     with _laid(subject) as simulator:
         seen = simulator.observe()
     shape = (seen.camera.height, seen.camera.width)
@@ -57,8 +51,6 @@ def _pictures(subject: Subject) -> None:
 
 @checks("simulators", "the same seed and folds end in the same state, which is finite")
 def _deterministic(subject: Subject) -> None:
-    if _is_real(subject):
-        return
     ends = []
     for _ in range(2):
         with _laid(subject) as simulator:
@@ -76,8 +68,6 @@ def _deterministic(subject: Subject) -> None:
 
 @checks("simulators", "a state can be returned to, and folded on from, to the same end")
 def _restores(subject: Subject) -> None:
-    if _is_real(subject):
-        return
     with _laid(subject) as simulator:
         action, start = _diagonal(simulator), simulator.state()
         simulator.execute(action)
@@ -95,8 +85,6 @@ def _restores(subject: Subject) -> None:
 
 @checks("simulators", "pixels outside the picture are refused, and nothing is lost")
 def _outside(subject: Subject) -> None:
-    if _is_real(subject):
-        return
     with _laid(subject) as simulator:
         before = simulator.state().positions.copy()
         try:
@@ -110,8 +98,6 @@ def _outside(subject: Subject) -> None:
 
 @checks("simulators", "a pick off the cloth moves nothing")
 def _misses(subject: Subject) -> None:
-    if _is_real(subject):
-        return
     with _laid(subject) as simulator:
         before = simulator.state().positions.copy()
         simulator.execute(Action(np.array([(3.0, 3.0)]), np.array([(30.0, 30.0)])))
@@ -123,8 +109,6 @@ def _misses(subject: Subject) -> None:
 
 @checks("simulators", "it changes nothing that it is handed")
 def _untouched(subject: Subject) -> None:
-    if _is_real(subject):
-        return
     simulator = subject.make()
     garment = plugins.generate_garment("square", 0, COARSE, size=SIZE)
     before = kept(garment.mesh)
