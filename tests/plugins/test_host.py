@@ -315,20 +315,24 @@ def test_a_hook_of_a_later_version_may_be_marked_optional(installed):
     assert problems(plugins.Host(), "early") == []
 
 
-def test_workers_know_the_plugins_that_their_parent_knows(installed):
+@pytest.fixture
+def forgotten():
+    """Asked for before what installs a plugin: once that is gone again, the process's own host looks anew."""
+    yield
+    plugins.refresh(third_party=True)
+
+
+def test_workers_know_the_plugins_that_their_parent_knows(forgotten, installed):
     installed(
         "elsewhere",
         "from polyfold import hookimpl\n\n@hookimpl\ndef register_policies(register):\n"
         "    register('elsewhere', 'a:B')\n",
     )
-    try:
-        for third_party in (True, False):
-            plugins.refresh(third_party)
-            found = [names for _, names in in_processes(plugins.names, ["policies"] * 2, workers=2)]
-            assert found[0] == found[1]
-            assert ("elsewhere" in found[1]) == third_party
-    finally:
-        plugins.refresh(third_party=True)
+    for third_party in (True, False):
+        plugins.refresh(third_party)
+        found = [names for _, names in in_processes(plugins.names, ["policies"] * 2, workers=2)]
+        assert found[0] == found[1]
+        assert ("elsewhere" in found[1]) == third_party
 
 
 def test_a_plugin_that_keeps_every_command_waiting_is_named(installed, monkeypatch):
