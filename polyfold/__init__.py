@@ -20,10 +20,11 @@ _HOMES = {
     "polyfold.config": ("Experiment",),
     "polyfold.errors": ("PolyfoldError", "RefusedError"),
     "polyfold.garments": ("Fabric", "Garment"),
-    "polyfold.geometry": ("Camera", "FoldLine"),
+    "polyfold.geometry": ("FoldLine",),
+    "polyfold.playground": ("play",),
     "polyfold.plugins": ("register",),
     "polyfold.plugins.hookspecs": ("hookimpl",),
-    "polyfold.polygon": ("FoldedModel", "Template"),
+    "polyfold.polygon": ("FoldedModel",),
     "polyfold.studies": ("Study", "ablate", "grid", "load"),
     "polyfold.types": ("Action", "Decision", "Episode", "Observation", "Scene", "Subgoal"),
 }
@@ -32,7 +33,6 @@ _MODULES = {"plugins": "polyfold.plugins", "view": "polyfold.viz"}
 
 __all__ = [
     "Action",
-    "Camera",
     "Decision",
     "Episode",
     "Experiment",
@@ -46,7 +46,6 @@ __all__ = [
     "Scene",
     "Study",
     "Subgoal",
-    "Template",
     "__version__",
     "ablate",
     "compare",
@@ -57,6 +56,7 @@ __all__ = [
     "hookimpl",
     "load",
     "open",
+    "play",
     "plugins",
     "register",
     "run",
@@ -70,10 +70,11 @@ if TYPE_CHECKING:
     from polyfold.config import Experiment
     from polyfold.errors import PolyfoldError, RefusedError
     from polyfold.garments import Fabric, Garment
-    from polyfold.geometry import Camera, FoldLine
+    from polyfold.geometry import FoldLine
+    from polyfold.playground import play
     from polyfold.plugins import register
     from polyfold.plugins.hookspecs import hookimpl
-    from polyfold.polygon import FoldedModel, Template
+    from polyfold.polygon import FoldedModel
     from polyfold.studies import Study, ablate, grid, load
     from polyfold.types import Action, Decision, Episode, Observation, Scene, Subgoal
 

@@ -78,9 +78,15 @@ class PolyFoldAgent:
         self._last: Decision | None = None
         self._tries = 0
         self._reopened: set[str] = set()
-        template = goal.template.of_size(*_size(self._segmenter.segment(observation), observation.camera))
+        template = goal.template.of_size(*_size(self._spread_flat(goal.previous, observation), observation.camera))
         self._pending = list(self._planner.subgoals(goal.instruction, template, goal.conversation))
         return tuple(self._pending)
+
+    def _spread_flat(self, previous: Decision | None, observation: Observation) -> NDArray[np.floating]:
+        """Points over or around the flat garment [px], shape (N, 2): what is seen, or what was before it was folded."""
+        if previous is not None and previous.scene is not None and previous.scene.model is not None:
+            return previous.scene.model.rest
+        return np.argwhere(self._segmenter.segment(observation))[:, ::-1].astype(float)
 
     def decide(self, observation: Observation) -> Decision | None:
         """Repeat the last fold if it failed, else ground and plan the next subgoal; None after the last."""
@@ -99,7 +105,7 @@ class PolyFoldAgent:
         if not self._pending:
             return None
         assert self._goal.conversation is not None
-        before = self._last
+        before = self._last or self._goal.previous
         scene = self._grounding.ground(
             observation,
             mask,
@@ -175,12 +181,11 @@ def _plans_step_by_step(planner: Planner) -> bool:
     return isinstance(planner, StepwisePlanner) and not planner.decomposes
 
 
-def _size(mask: NDArray[np.bool_], camera: Camera) -> tuple[float, float]:
+def _size(points: NDArray[np.floating], camera: Camera) -> tuple[float, float]:
     """Width and height of flat cloth [m], along the sides of the smallest rectangle around it nearest to upright."""
     import cv2
 
-    points = np.argwhere(mask)[:, ::-1].astype(np.float32)
-    corners = cv2.boxPoints(cv2.minAreaRect(points))
+    corners = cv2.boxPoints(cv2.minAreaRect(points.astype(np.float32)))
     sides = np.array([corners[1] - corners[0], corners[2] - corners[1]])
     lengths = (np.hypot(*sides.T) + 1) / camera.pixels_per_metre
     across = int(np.argmax(np.abs(sides[:, 0]) / np.hypot(*sides.T)))

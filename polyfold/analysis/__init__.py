@@ -2,7 +2,7 @@
 
 from polyfold.analysis._intervals import Estimate, mean, share
 from polyfold.analysis._providers import provider_table
-from polyfold.analysis._results import Results, open_results
+from polyfold.analysis._results import Results
 from polyfold.analysis._tables import Table, shown
 from polyfold.analysis._tabulation import compare, table
 
@@ -12,7 +12,6 @@ __all__ = [
     "Table",
     "compare",
     "mean",
-    "open_results",
     "provider_table",
     "share",
     "shown",

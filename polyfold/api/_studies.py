@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from polyfold.analysis import Results, open_results
+from polyfold.analysis import Results
+from polyfold.analysis._results import open_results
 from polyfold.logs import read_run
 from polyfold.studies import Study
 from polyfold.studies._run import evaluate

@@ -1,12 +1,12 @@
 """Discovery of plugins and the catalog of components: names become objects here and nowhere else.
 
 What each kind of component must do stands in :mod:`polyfold.plugins.interfaces`, how to register one and how to watch
-runs in :mod:`polyfold.plugins.hookspecs`. The functions here are the methods of the process's own :class:`Host`;
+runs in :mod:`polyfold.plugins.hookspecs`. The functions here are the methods of the process's own host;
 :func:`generate_garment` and :func:`make_fabric` ask it for garments with their fabric.
 """
 
 from polyfold.plugins._fabrics import generate_garment, make_fabric
-from polyfold.plugins._host import HOST, Host
+from polyfold.plugins._host import HOST
 
 blame = HOST.blame
 by_hand = HOST.by_hand
@@ -27,7 +27,6 @@ unobserve = HOST.unobserve
 unregister = HOST.unregister
 
 __all__ = [
-    "Host",
     "catalog",
     "component_class",
     "create",

@@ -252,6 +252,7 @@ class Goal:
         seed: for the agent's own randomness.
         instruction: the sentence.
         conversation: the episode's language model.
+        previous: the fold that led to the cloth as it lies, with the scene before it; None where nobody has folded it.
         subgoal_texts, subgoal_images, goal_image: accurate guidance, for agents that need it; with ``final`` guidance
             the subgoals are the goal alone.
         subgoal_depths: the same as the depth that a camera would measure [m], float32, shape (H, W) each.
@@ -267,6 +268,7 @@ class Goal:
     seed: int
     instruction: str | None = None
     conversation: Conversation | None = None
+    previous: Decision | None = None
     subgoal_texts: Sequence[str] | None = None
     subgoal_images: Sequence[NDArray[np.uint8]] | None = None
     subgoal_depths: Sequence[NDArray[np.float32]] | None = None

@@ -13,7 +13,7 @@ from polyfold.polygon import Template
 from polyfold.rollout._privileged import privileged_inputs
 from polyfold.rollout._transcript import Transcript
 from polyfold.tasks import Task
-from polyfold.types import Observation, SimState
+from polyfold.types import Decision, Observation, SimState
 
 GUIDED = frozenset({"subgoal_texts", "subgoal_images", "subgoal_depths", "goal_image", "fold_lines", "ideals"})
 """What is made from a task and the true keypoints."""
@@ -47,8 +47,23 @@ class Start:
     simulator: Simulator
 
 
-def goal_for(agent: Agent, start: Start, template: Template, agent_seed: int) -> Goal:
+def goal_for(
+    agent: Agent,
+    start: Start,
+    template: Template,
+    agent_seed: int,
+    instruction: str,
+    previous: Decision | None = None,
+) -> Goal:
     """What an agent is handed at the start.
+
+    Args:
+        agent: whose goal it is.
+        start: how the episode began.
+        template: polygon template of the garment's kind.
+        agent_seed: for the agent's own randomness.
+        instruction: the sentence.
+        previous: the fold that led to the cloth as it lies; None where nobody has folded it yet.
 
     Raises:
         PlanError: if it requires what no loop can give.
@@ -60,17 +75,24 @@ def goal_for(agent: Agent, start: Start, template: Template, agent_seed: int) ->
         raise PlanError(
             f"the agent requires {sorted(unknown)}, which no loop can give; see polyfold.plugins.interfaces.Agent"
         )
-    offered = _offered(start)
+    offered = _offered(start, instruction)
     if requires & GUIDED:
         offered |= _guidance(start)
     told = {name: value for name, value in offered.items() if name in requires}
     conversation = start.transcript if "instruction" in requires else None
-    return Goal(kind=start.garment.kind, template=template, seed=agent_seed, conversation=conversation, **told)
+    return Goal(
+        kind=start.garment.kind,
+        template=template,
+        seed=agent_seed,
+        conversation=conversation,
+        previous=previous,
+        **told,
+    )
 
 
-def _offered(start: Start) -> dict[str, Any]:
+def _offered(start: Start, instruction: str) -> dict[str, Any]:
     return {
-        "instruction": start.instruction,
+        "instruction": instruction,
         "fold_count": None if start.task is None else len(start.task.steps),
         "state": start.simulator.state,
         "simulator": start.simulator,

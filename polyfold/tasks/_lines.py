@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,11 +28,26 @@ def fold_lines(task: Task, keypoints: Mapping[str, ArrayLike]) -> list[FoldLine]
     Raises:
         ConfigError: if the task needs a keypoint that is missing, or its points coincide on this garment.
     """
+    everything = np.array([np.asarray(point, float) for point in keypoints.values()])
+    return [_stretched(line, everything) for line, _ in _folded(task, keypoints)]
+
+
+def points_after(task: Task | None, keypoints: Mapping[str, ArrayLike]) -> dict[str, NDArray[np.float64]]:
+    """Where the points that a further step would go by are once a task was done [px]; None for no task yet."""
     at = {name: np.asarray(point, float) for name, point in keypoints.items()}
-    everything, moved, lines = np.array(list(at.values())), set[str](), []
+    for _, at in _folded(task, keypoints) if task else ():  # noqa: B007
+        pass
+    return at
+
+
+def _folded(
+    task: Task, keypoints: Mapping[str, ArrayLike]
+) -> Iterator[tuple[FoldLine, dict[str, NDArray[np.float64]]]]:
+    """Each step's line, and where the points that later ones go by are after it."""
+    at, moved = {name: np.asarray(point, float) for name, point in keypoints.items()}, set[str]()
     for number, fold in enumerate(task.steps, 1):
         try:
-            lines.append(line := _stretched(_line_of(fold, at), everything))
+            line = _line_of(fold, at)
         except KeyError as error:
             raise ConfigError(
                 f"task {task.id}, step {number} needs the keypoint {error}, which the garment does not have; "
@@ -42,7 +57,7 @@ def fold_lines(task: Task, keypoints: Mapping[str, ArrayLike]) -> list[FoldLine]
             raise ConfigError(f"task {task.id}, step {number}: {error}; choose other points") from error
         moved.update(*(source for source, _ in fold.pairs or ()), fold.lift or {})
         at |= {name: line.mirror(at[name]) for name in at.keys() - moved if line.distance(at[name]) > 0.0}
-    return lines
+        yield line, dict(at)
 
 
 def mirror_line(sources: ArrayLike, targets: ArrayLike) -> FoldLine:

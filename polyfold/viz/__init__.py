@@ -4,7 +4,7 @@ from polyfold.viz import _pictures as _pictures
 from polyfold.viz._draw._animation import gif
 from polyfold.viz._draw._filmstrips import Frame, filmstrip
 from polyfold.viz._draw._overlays import overlay, value_map
-from polyfold.viz._draw._polygons import grounding_picture, polygon_picture
+from polyfold.viz._draw._polygons import grounding_picture
 from polyfold.viz._draw._saving import png, save
 from polyfold.viz._draw._sheets import Card, score_sheet
 from polyfold.viz._draw._shown import animate, show
@@ -21,7 +21,6 @@ __all__ = [
     "grounding_picture",
     "overlay",
     "png",
-    "polygon_picture",
     "provider_figure",
     "save",
     "score_sheet",

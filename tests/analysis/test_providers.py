@@ -7,7 +7,7 @@ from polyfold_offline import OfflineLLM
 from polyfold_offline.loopback import Sent, answering, completion, serve
 
 import polyfold
-from polyfold.analysis import Results, open_results, provider_table, share
+from polyfold.analysis import Results, provider_table, share
 from polyfold.analysis._columns import shared
 from polyfold.analysis._providers import MEASURES, measured
 from polyfold.cli import main
@@ -58,7 +58,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def results(folder):
-    return open_results(folder)
+    return polyfold.open(folder)
 
 
 def rows(results):
@@ -206,7 +206,7 @@ def test_a_key_that_one_variant_lacks_is_reported_before_the_others_fold(tmp_pat
     study = polyfold.Study(name="s", tasks=TASKS, variants={"offline": {}, "keyed": {"llm": "litellm:openai/gpt-4o"}})
     with pytest.raises(LLMAccessError, match="OPENAI_API_KEY"):
         polyfold.run(study, tmp_path / "run", progress=False)
-    assert not open_results(tmp_path / "run").records
+    assert not polyfold.open(tmp_path / "run").records
 
 
 @pytest.mark.parametrize("name", ["offline", "gpt-4o", "gemini-2.5-pro"])

@@ -10,6 +10,7 @@ import pytest
 
 from polyfold import plugins
 from polyfold.errors import PluginError
+from polyfold.plugins._host import Host
 from polyfold.studies import in_processes
 
 
@@ -37,7 +38,7 @@ def problems(host, name):
 
 
 def test_hosts_share_no_registrations():
-    one, other = plugins.Host(), plugins.Host()
+    one, other = Host(), Host()
     one.register("policies", "mine", Component)
     assert one.component_class("policies", "mine") is Component
     for host in (other, plugins):
@@ -54,7 +55,7 @@ def test_hosts_share_no_observers():
         def on_step(self, step):
             self.seen += 1
 
-    one, other, counter = plugins.Host(), plugins.Host(), Counter()
+    one, other, counter = Host(), Host(), Counter()
     one.observe(counter)
     other.notify("on_step", step=None, role="method")
     assert counter.seen == 0
@@ -65,7 +66,7 @@ def test_hosts_share_no_observers():
 
 
 def test_what_is_registered_by_hand_gives_way_to_what_it_hid():
-    host = plugins.Host()
+    host = Host()
     caso = host.component_class("policies", "caso")
     host.register("policies", "caso", Component)
     assert host.component_class("policies", "caso") is Component
@@ -97,7 +98,7 @@ def test_observers_are_given_what_they_ask_for():
         def on_episode_end(self):
             seen.append("end")
 
-    host = plugins.Host()
+    host = Host()
     host.observe(Observer())
     host.notify("on_episode_start", start=1, role="reference")
     host.notify("on_step", step=2, role="reference")
@@ -116,7 +117,7 @@ def test_an_observer_that_fails_disturbs_nobody_and_is_warned_of_once(recwarn):
         def on_step(self, step):
             seen.append(step)
 
-    host = plugins.Host()
+    host = Host()
     for observer in (Failing(), Working(), Failing()):
         host.observe(observer)
     recwarn.clear()
@@ -139,7 +140,7 @@ class Equal:
 
 
 def test_observers_are_told_apart_by_identity():
-    host, one, other = plugins.Host(), Equal(), Equal()
+    host, one, other = Host(), Equal(), Equal()
     host.observe(one)
     host.observe(other)
     host.notify("on_step", step=0, role="method")
@@ -159,12 +160,12 @@ def test_observers_are_told_apart_by_identity():
 def test_an_observer_that_would_never_be_called_is_refused(methods, says):
     observer = type("Observer", (), methods)()
     with pytest.raises(PluginError, match=says):
-        plugins.Host().observe(observer)
+        Host().observe(observer)
 
 
 def test_stopping_who_does_not_observe_says_so():
     with pytest.raises(PluginError, match="does not observe"):
-        plugins.Host().unobserve(object())
+        Host().unobserve(object())
 
 
 @pytest.mark.filterwarnings("ignore:plugin 'odd_")
@@ -205,7 +206,7 @@ def test_stopping_who_does_not_observe_says_so():
 def test_what_is_wrong_with_a_plugin_is_recorded_against_it_alone(installed, request, source, attribute, says):
     name = f"odd_{request.node.callspec.id}"
     installed(name, source, attribute)
-    host = plugins.Host()
+    host = Host()
     (summary,) = problems(host, name)
     assert re.search(says, summary, re.DOTALL)
     assert "\n" not in summary
@@ -227,7 +228,7 @@ def test_what_is_wrong_with_a_plugin_is_recorded_against_it_alone(installed, req
 )
 def test_a_garment_by_another_name_is_told_its_kind_and_an_unknown_one_all_kinds(name, says):
     with pytest.raises(PluginError, match=re.escape(says)):
-        plugins.Host().find("garments", name)
+        Host().find("garments", name)
 
 
 def test_a_property_that_raises_disturbs_nobody(installed):
@@ -236,7 +237,7 @@ def test_a_property_that_raises_disturbs_nobody(installed):
         "class Shy:\n    @property\n    def hook(self):\n        raise RuntimeError('no one home')\nshy = Shy()\n",
         ":shy",
     )
-    host = plugins.Host()
+    host = Host()
     assert problems(host, "shy") == []
     assert "caso" in host.names("policies")
 
@@ -247,14 +248,14 @@ def test_what_a_plugin_prints_is_no_part_of_an_answer(installed, capsys):
         "from polyfold import hookimpl\nprint('hello')\n\n"
         "@hookimpl\ndef register_llms(register):\n    print('there')\n",
     )
-    plugins.Host().catalog()
+    Host().catalog()
     said = capsys.readouterr()
     assert said.out == ""
     assert said.err == "hello\nthere\n"
 
 
 def test_a_requirement_that_is_installed_in_another_version_is_missing():
-    host = plugins.Host()
+    host = Host()
     host.register("policies", "modern", Component, needs=("numpy>=99",))
     host.register("policies", "usual", Component, needs=("numpy>=1.20", "Pillow"))
     with pytest.raises(PluginError, match=r"needs numpy>=99; install with: pip install 'numpy>=99'"):
@@ -271,7 +272,7 @@ def test_an_extra_is_missing_until_all_that_it_asks_for_is_installed(tmp_path, m
         "Requires-Dist: nobody-has-this; python_version < '3' and extra == 'fast'\n"
     )
     monkeypatch.syspath_prepend(str(tmp_path))
-    host = plugins.Host()
+    host = Host()
     for name, extra in (("plain", ""), ("fast", "[fast]"), ("whole", "[all]")):
         host.register("policies", name, Component, needs=(f"sorter{extra}",))
     assert host.find("policies", "plain").name == "plain"
@@ -293,7 +294,7 @@ def test_a_plugin_may_be_any_object(installed):
         "plugin = Plugin()\n",
         ":plugin",
     )
-    host = plugins.Host()
+    host = Host()
     assert problems(host, "unhashable") == []
     assert {"from-object", "caso"} <= set(host.names("policies"))
     assert "square" in host.names("garments")
@@ -301,7 +302,7 @@ def test_a_plugin_may_be_any_object(installed):
 
 def test_a_problem_is_warned_of_once_however_much_is_registered_by_hand(installed, recwarn):
     installed("undone", "def register_policies(register):\n    pass\n")
-    host = plugins.Host()
+    host = Host()
     for name in ("one", "two"):
         host.register("policies", name, Component)
     assert len([warning for warning in recwarn if "lacks @hookimpl" in str(warning.message)]) == 1
@@ -312,7 +313,7 @@ def test_a_hook_of_a_later_version_may_be_marked_optional(installed):
         "early",
         "from polyfold import hookimpl\n\n@hookimpl(optionalhook=True)\ndef on_wrinkle(wrinkle):\n    pass\n",
     )
-    assert problems(plugins.Host(), "early") == []
+    assert problems(Host(), "early") == []
 
 
 @pytest.fixture
@@ -341,7 +342,7 @@ def test_a_plugin_that_keeps_every_command_waiting_is_named(installed, monkeypat
     with pytest.warns(
         UserWarning, match=r"'sluggard' \(sluggard 1\.0\) took \d+\.\d s to import, .* POLYFOLD_DISABLE=sluggard"
     ):
-        plugins.Host().names("policies")
+        Host().names("policies")
 
 
 def test_the_version_is_told_without_loading_plugins(installed, tmp_path, monkeypatch):

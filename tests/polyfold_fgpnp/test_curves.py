@@ -12,7 +12,7 @@ from polyfold_fgpnp.studies.scores import Scores
 from polyfold_fgpnp.studies.variants import Learned, few_tasks, learned
 from polyfold_fgpnp.training.runs import read_run
 
-from polyfold.analysis import open_results
+import polyfold
 from polyfold.errors import ConfigError
 from polyfold.evaluation import suite
 from polyfold.logs import RunDirectory, StudyEpisodeRecord
@@ -194,7 +194,7 @@ def test_only_episodes_count_that_every_variant_has(tmp_path):
     made = study([Learned(10000, 0, 4)])
     out = evaluated(tmp_path / "evaluation", made, lambda variant, kind, seed: seed == 0, garments=(0,))
     run_directory(out, made).append(record("affordance-pair", TASKS[0], 1, False))
-    found = Scores(open_results(out))
+    found = Scores(polyfold.open(out))
     assert len(found.episodes) == 2
     assert found.mean("affordance-pair") == 100.0
 
@@ -202,6 +202,6 @@ def test_only_episodes_count_that_every_variant_has(tmp_path):
 def test_the_interval_draws_garments_and_not_episodes(tmp_path):
     many = {**study([Learned(10000, 0, 4)]), "tasks": tuple(few_tasks(99))}
     out = evaluated(tmp_path / "evaluation", many, lambda variant, kind, seed: seed % 2)
-    last = sizes_table(Scores(open_results(out))).rows[0][-1]
+    last = sizes_table(Scores(polyfold.open(out))).rows[0][-1]
     low, high = map(float, last.partition("[")[2].rstrip("]").split(", "))
     assert high - low > 30, "16 garments, half of which always fail: 280 independent episodes would give 12"

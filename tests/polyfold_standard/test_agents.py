@@ -50,7 +50,7 @@ def test_the_oracle_leaves_the_best_of_what_it_tried(monkeypatch):
 def test_no_task_has_so_many_tries_that_its_episode_is_stopped():
     from polyfold_standard.agents.oracle import BUDGET
 
-    from polyfold.rollout._loop import MAX_STEPS
+    from polyfold.rollout._rollout import MAX_STEPS
 
     assert BUDGET <= MAX_STEPS
 

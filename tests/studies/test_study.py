@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import polyfold
-from polyfold.analysis import open_results
 from polyfold.config import ComponentSpec
 from polyfold.errors import ConfigError, GroundingError, SimulationError
 from polyfold.evaluation import suite
@@ -99,7 +98,7 @@ def test_two_workers_give_the_same_as_one_and_the_table_prints_in_every_format(t
     one = evaluate(study, tmp_path / "one", progress=False)
     two = evaluate(study, tmp_path / "two", workers=2, progress=False)
     assert untimed(one) == untimed(two)
-    table = polyfold.table(open_results(tmp_path / "two"))
+    table = polyfold.table(polyfold.open(tmp_path / "two"))
     assert table.csv().count("\n") == table.markdown().count("| polyfold |") == 2
     assert "<td>square</td>" in table.html()
     assert r"success \%" in table.latex()
@@ -249,7 +248,7 @@ def test_an_oracle_that_diverges_is_recorded_and_ends_no_study(tmp_path, monkeyp
     records = evaluate(study, tmp_path, progress=False)
     assert [record.cause for record in records] == ["infrastructure"] * 4
     assert "the oracle failed" in records[0].failure.reason
-    assert "–" in polyfold.table(open_results(tmp_path)).markdown()
+    assert "–" in polyfold.table(polyfold.open(tmp_path)).markdown()
 
 
 def test_policies_that_pick_at_vertices_run_on_oracle_fold_lines(tmp_path):

@@ -9,6 +9,7 @@ import pytest
 from polyfold import viz
 from polyfold.geometry import Camera, FoldLine
 from polyfold.types import Action, Observation
+from polyfold.viz._draw._polygons import polygon_picture
 from polyfold.viz._draw._style import ARMS, FOLD_LINE
 
 
@@ -126,7 +127,7 @@ def test_a_map_has_a_colour_bar_where_there_is_room(rgb):
 
 
 def test_polygon_pictures_show_both_sides_and_all_names(rgb, model, tmp_path):
-    plain = viz.polygon_picture(model)
+    plain = polygon_picture(model)
     assert plain.shape == (400, 400, 3)
     assert plain[200, 180].astype(int).sum() > plain[200, 300].astype(int).sum()  # the reverse side is lighter
     page = viz.grounding_picture(rgb, model, "rectangle, Chamfer distance 0.4 px", tmp_path / "ground.png")

@@ -32,7 +32,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from polyfold.analysis import open_results
+import polyfold
 from polyfold.errors import ConfigError, PolyfoldError
 from polyfold_fgpnp.studies.curve_figures import sizes_figure, training_figure
 from polyfold_fgpnp.studies.curve_tables import sizes_table, training_table
@@ -101,13 +101,13 @@ def _print_study(options: argparse.Namespace) -> None:
 
 def _draw_training(options: argparse.Namespace) -> None:
     runs = [read_run(path) for path in options.runs]
-    found = None if options.evaluation is None else Scores(open_results(options.evaluation), options.score)
+    found = None if options.evaluation is None else Scores(polyfold.open(options.evaluation), options.score)
     _save(training_figure(runs, found), options.out)
     print(training_table(runs, found).markdown())
 
 
 def _draw_sizes(options: argparse.Namespace) -> None:
-    found = Scores(open_results(options.evaluation), options.score)
+    found = Scores(polyfold.open(options.evaluation), options.score)
     _save(sizes_figure(found), options.out)
     print(sizes_table(found).markdown())
 

@@ -28,6 +28,11 @@ MAP: tuple[Colour, ...] = (
 """Ten stops of cividis, from low to high."""
 
 
+def css(colour: Colour) -> str:
+    """A colour as style sheets have it."""
+    return "#{:02x}{:02x}{:02x}".format(*colour)
+
+
 @cache
 def font(size: int, bold: bool = False) -> Any:
     """DejaVu Sans in pixels where matplotlib is installed (it has the signs we use), else Pillow's own font."""

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from polyfold.analysis import Results, open_results
+from polyfold.analysis import Results
+from polyfold.analysis._results import open_results
 from polyfold.errors import PolyfoldError
 from polyfold.logs import StudyEpisodeRecord
 from polyfold.studies import Study

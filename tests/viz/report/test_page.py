@@ -11,7 +11,6 @@ import pytest
 from made_up_runs import BAD, GOOD, TASKS, record
 
 import polyfold
-from polyfold.analysis import open_results
 from polyfold.cli import main
 from polyfold.errors import ConfigError
 from polyfold.viz._report import report_html
@@ -90,7 +89,7 @@ def test_the_numbers_behind_every_chart_can_be_saved(full_run):
         kind, content = link.split(",", 1)
         assert kind == "data:text/csv;charset=utf-8;base64"
         rows[name] = list(csv.DictReader(base64.b64decode(content).decode().splitlines()))
-    results = open_results(full_run)
+    results = polyfold.open(full_run)
     whole = next(row for row in rows["success.csv"] if (row["variant"], row["kind"]) == ("ours", "all"))
     succeeded = [record.succeeded for record in results.of("ours")]
     assert float(whole["success %"]) == pytest.approx(100 * sum(succeeded) / len(succeeded), abs=1e-3)
@@ -214,7 +213,7 @@ def noise_run(full_run, tmp_path):
 
 def test_the_noise_floor_is_a_footnote_where_it_is_given(full_run, noise_run):
     assert "Noise floor" not in report_html(full_run)
-    page = report_html(full_run, noise=open_results(noise_run))
+    page = report_html(full_run, noise=polyfold.open(noise_run))
     assert "Noise floor" in page
     assert "MPPE [mm]" in page.partition("Noise floor")[2]
 
@@ -227,7 +226,7 @@ def test_a_single_variant_needs_no_comparison(make_run):
 def test_the_configuration_on_the_page_is_the_file_that_runs_the_study_again(full_run, tmp_path):
     shown = html.unescape(re.search(r'<pre tabindex="0">(.*?)</pre>', report_html(full_run), re.DOTALL)[1])
     (tmp_path / "again.toml").write_text(shown)
-    assert polyfold.load(tmp_path / "again.toml") == open_results(full_run).study
+    assert polyfold.load(tmp_path / "again.toml") == polyfold.open(full_run).study
 
 
 def test_the_same_run_gives_the_same_page(full_run):

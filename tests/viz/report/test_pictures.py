@@ -4,7 +4,6 @@ import pytest
 from PIL import Image
 
 import polyfold
-from polyfold.analysis import open_results
 from polyfold.cli import main
 from polyfold.errors import ConfigError
 from polyfold.logs._disk.files import picture_path
@@ -100,5 +99,5 @@ def test_evaluate_then_report(tmp_path):
     )
     assert main(["evaluate", str(config), "--out", str(tmp_path / "run"), "--pictures", "all"]) == 0
     assert main(["report", str(tmp_path / "run")]) == 0
-    (record,) = open_results(tmp_path / "run").records
+    (record,) = polyfold.open(tmp_path / "run").records
     assert json.dumps(record.instruction)[1:-1] in (tmp_path / "run" / "report.html").read_text("utf-8")

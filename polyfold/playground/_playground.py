@@ -1,0 +1,304 @@
+"""What one plays with: the cloth as it lies, what was done to it, and what would be done next."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+
+from polyfold import plugins
+from polyfold.api import garment as named_garment
+from polyfold.api._fold import GIF_RATE, save
+from polyfold.config import Experiment
+from polyfold.errors import ConfigError, GroundingError
+from polyfold.evaluation import judge
+from polyfold.garments import Garment
+from polyfold.geometry import FoldLine, contour_of
+from polyfold.plugins._fabrics import garment_template
+from polyfold.plugins.interfaces import RecordsMotion, action_map_later
+from polyfold.rollout._inputs import Start
+from polyfold.rollout._loop import build_agent
+from polyfold.rollout._rollout import Rollout
+from polyfold.rollout._sentences import plain
+from polyfold.rollout._transcript import Transcript
+from polyfold.types import Action, Decision, Episode, Observation, Scene, SimState, Step
+from polyfold.types._views import view_of
+from polyfold.viz._film import Moment
+
+Move = str | FoldLine | Action
+"""What one can ask for: a sentence, a fold line, or picks and places."""
+
+
+@dataclass(frozen=True, eq=False)
+class Turn:
+    """What was asked for at once, and the folds that came of it."""
+
+    move: Move
+    steps: tuple[Step, ...]
+
+    def in_words(self) -> str:
+        """What was asked for, and what came of it."""
+        asked = f"“{self.move}”" if isinstance(self.move, str) else "a fold line"
+        asked = "picks and places" if isinstance(self.move, Action) else asked
+        return f"{asked}: {'; '.join(step.in_words() for step in self.steps)}"
+
+
+def play(
+    garment: str | Garment = "tshirt", seed: int = 0, *, experiment: Experiment | None = None, **components: Any
+) -> Playground:
+    """Lay a garment on the table and fold it by hand; the last line of a cell in JupyterLab shows a widget.
+
+    There one draws a fold line or drags picks to their places, sees the policy's picks and the polygon, folds, takes
+    back, types a sentence, and takes home what was done. Everything is there from code as well::
+
+        playground = polyfold.play("tshirt")
+        playground.fold("fold it in half")
+        playground.fold(polyfold.FoldLine((120, 210), (280, 210)))
+        playground.undo()
+
+    Args:
+        garment: a kind, of which ``seed`` picks the instance, or a garment made by :func:`polyfold.garment`.
+        seed: picks the garment and how it lies, and the agent's random choices.
+        experiment: the components; by default those that need no key and no GPU.
+        components: single components instead: ``policy="farthest"``, ``fabric="denim"``.
+
+    Raises:
+        PluginError: if there is no such kind of garment, or no such component.
+        ConfigError: if the agent can't follow sentences alone.
+    """
+    experiment = (experiment or Experiment()).override(components)
+    if isinstance(garment, str):
+        garment = named_garment(garment, seed=seed, experiment=experiment)
+    return Playground(garment, seed, experiment)
+
+
+class Playground:
+    """Cloth on a table, folded move by move; :func:`play` makes one.
+
+    Attributes:
+        garment: what lies there.
+        experiment: with which components.
+        seed: of how it lay, and of the random choices.
+        turns: what was asked for so far.
+        widget: what shows it in JupyterLab, once it was shown.
+    """
+
+    def __init__(self, garment: Garment, seed: int, experiment: Experiment) -> None:
+        self.garment, self.experiment, self.seed = garment, experiment, seed
+        self._agent = build_agent(experiment)
+        if self._agent.requires - {"instruction"}:
+            raise ConfigError(
+                f"the agent {experiment.agent.name!r} needs {', '.join(sorted(self._agent.requires))}, and here is a "
+                "sentence at most; choose an agent that follows sentences, such as polyfold"
+            )
+        self._segmenter = plugins.create_chosen(experiment, "segmenter")
+        self._grounding = plugins.create_chosen(experiment, "grounding")
+        self._policy = plugins.create_chosen(experiment, "policy")
+        self._simulator = plugins.create_chosen(experiment, "simulator")
+        labels = {"task": None, "garment": garment.name, "seed": seed, "instruction": ""}
+        self._transcript = Transcript(plugins.create_chosen(experiment, "llm"), labels)
+        observation = self._simulator.reset(garment, seed)
+        self._rollout = Rollout(
+            Start(
+                experiment, garment, "", None, observation, self._simulator.state(), self._transcript, self._simulator
+            )
+        )
+        self.turns: list[Turn] = []
+        self._scene: Scene | None = None
+        self._moments: list[Moment] = []
+        self._watcher: Callable[[Observation], Any] | None = None
+        self.widget: Any = None
+        if isinstance(self._simulator, RecordsMotion):
+            self._simulator.record(self._moved, GIF_RATE)
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The folds so far."""
+        return tuple(self._rollout.steps)
+
+    @property
+    def observation(self) -> Observation:
+        """What the camera sees now."""
+        return self._rollout.seen
+
+    @property
+    def state(self) -> SimState:
+        """Where the cloth truly is, after the last fold that was finished."""
+        return self.steps[-1].after if self.steps else self._rollout.start.state
+
+    @property
+    def scene(self) -> Scene:
+        """What the grounding makes of it; without a polygon, and with the reason among the notes, where it can't.
+
+        Raises:
+            GroundingError: if no cloth is in sight.
+        """
+        if self._scene is None:
+            self._scene = self._grounded()
+        return self._scene
+
+    def _grounded(self) -> Scene:
+        last = self._rollout.steps[-1] if self._rollout.steps else None
+        mask = self._segmenter.segment(self.observation)
+        template = garment_template(self.garment.kind, self.garment.fabric)
+        before = (None, None) if last is None else (last.scene, last.fold_line)
+        try:
+            return self._grounding.ground(self.observation, mask, template, *before)
+        except GroundingError as error:
+            height, width = mask.shape
+            return Scene(self.garment.kind, (width, height), mask, contour_of(mask), None, "{}", notes=(str(error),))
+
+    def propose(self, move: FoldLine | Action) -> Decision:
+        """What a fold line would have done, by the policy's picks; picks and places are taken as they are.
+
+        Raises:
+            PlanError: if no cloth lies left of the line.
+            ActionError: if a pick or place lies outside the picture.
+            GroundingError: if no cloth is in sight.
+        """
+        scene = self.scene
+        if isinstance(move, Action):
+            move.check_inside(self.observation.camera)
+            line = FoldLine.moving(move.picks.mean(axis=0), move.places.mean(axis=0))
+            return Decision(move, None, line, scene)
+        clock = time.perf_counter()
+        # The same line has the same picks, however often it is looked at.
+        rng = np.random.default_rng([self.seed, len(self.steps)])
+        action = self._policy.act(move, scene, rng)
+        spent = {"policy": time.perf_counter() - clock}
+        return Decision(action, None, move, scene, spent, action_map=action_map_later(self._policy, move, scene))
+
+    def fold(self, move: Move) -> tuple[Step, ...]:
+        """Fold along a line with the policy's picks, from picks to places, or as a sentence says.
+
+        A sentence goes through the experiment's agent, which may fold several times and set a fold right; it goes on
+        from what was folded by hand.
+
+        Returns:
+            The folds that were made.
+
+        Raises:
+            RefusedError: if the sentence can't be understood or done.
+            PolyfoldError: as of :meth:`propose`, or if planning or the simulation fail; folds made until then stay.
+        """
+        before = len(self.steps)
+        try:
+            if isinstance(move, str):
+                self._follow(plain(move))
+            else:
+                self._rollout.execute(self.propose(move))
+        except KeyboardInterrupt:
+            self._simulator.restore(self.state)
+            raise
+        finally:
+            made = self.steps[before:]
+            if made:
+                self.turns.append(Turn(move, made))
+                self._scene = None
+        return made
+
+    def _follow(self, sentence: str) -> None:
+        error = self._rollout.follow(self._agent, sentence, self.seed, self.seed)
+        if error is not None:
+            raise error
+
+    def undo(self) -> bool:
+        """Take back what the last :meth:`fold` did; False if nothing was done yet."""
+        if not self.turns:
+            return False
+        turn = self.turns.pop()
+        for _ in turn.steps:
+            self._rollout.take_back()
+        self._moments = [moment for moment in self._moments if moment.fold < len(self.steps)]
+        self._scene = None
+        return True
+
+    @property
+    def episode(self) -> Episode:
+        """What was done so far, judged as :func:`polyfold.fold` judges; it shows itself as a filmstrip."""
+        return judge(replace(self._rollout.episode(self.seed, self.seed), instruction="; then ".join(self._said())))
+
+    def save(self, folder: str | Path) -> Path:
+        """Write what was done as ``polyfold fold --out`` does: ``episode.json``, ``filmstrip.png``, ``fold.gif``.
+
+        Raises:
+            ConfigError: if nothing was done yet, or the folder can't be written to.
+        """
+        self._refuse_if_untouched()
+        folder = Path(folder)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ConfigError(f"can't write to {folder} ({error.strerror}); choose another folder") from error
+        save(self.episode, folder, self._moments)
+        return folder
+
+    def task(self, name: str = "my-task") -> str:
+        """What was done as a task of a suite, in TOML, on the garment's keypoints, so that it fits others of its kind.
+
+        Write it into a file and give that to ``polyfold evaluate --suite`` or name it in a plugin.
+
+        Raises:
+            ConfigError: if nothing was done yet, the name serves no task, or the cloth is real.
+        """
+        from polyfold.playground._tasks import as_task
+
+        self._refuse_if_untouched()
+        if not self._rollout.start.state.known:
+            raise ConfigError(
+                "a task is told by true keypoints, and of real cloth nobody knows them; play in simulation"
+            )
+        keypoints = self._rollout.start.state.keypoint_pixels()
+        return as_task(self.garment, keypoints, self.steps, self._said(), name)
+
+    def code(self) -> str:
+        """What was done as Python that does it again."""
+        from polyfold.playground._code import as_code
+
+        return as_code(self.garment, self.seed, self.experiment, [turn.move for turn in self.turns])
+
+    def close(self) -> None:
+        """Release the simulator; nothing can be folded afterwards."""
+        self._simulator.close()
+
+    def __enter__(self) -> Playground:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _said(self) -> list[str]:
+        return [turn.move for turn in self.turns if isinstance(turn.move, str)]
+
+    def _refuse_if_untouched(self) -> None:
+        if not self.turns:
+            raise ConfigError("nothing was folded yet; fold something first")
+
+    @contextmanager
+    def watched(self, watcher: Callable[[Observation], Any]) -> Iterator[None]:
+        """Hand a watcher pictures of the cloth while it moves, where the simulator can."""
+        self._watcher = watcher
+        try:
+            yield
+        finally:
+            self._watcher = None
+
+    def _moved(self, seen: Observation) -> None:
+        self._moments.append(Moment(seen, self._simulator.state(), len(self.steps)))
+        if self._watcher is not None:
+            self._watcher(seen)
+
+    def _repr_mimebundle_(self, **options: Any) -> dict[str, Any]:
+        return view_of(self, "mimebundle", options)
+
+    def __repr__(self) -> str:
+        folds = "1 fold" if len(self.steps) == 1 else f"{len(self.steps)} folds"
+        return f"<Playground: {self.garment.name}, {folds}>"
