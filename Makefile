@@ -5,9 +5,10 @@ BIN := $(VENV)/bin
 LIGHT := $(VENV)/.light
 INSTALLED := $(VENV)/.installed
 LINTERS := $(VENV)/.linters
+DOCS := $(VENV)/.docs
 PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: demo test lint results clean
+.PHONY: demo test lint docs results clean
 
 # What `make demo` needs is a third of what the tests do.
 $(LIGHT): pyproject.toml constraints.txt
@@ -24,6 +25,10 @@ $(LINTERS): $(INSTALLED)
 	$(PIP_INSTALL) --editable '.[lint]'
 	touch $(LINTERS)
 
+$(DOCS): $(LIGHT)
+	$(PIP_INSTALL) --editable '.[docs]'
+	touch $(DOCS)
+
 demo: $(LIGHT)
 	$(BIN)/polyfold fold "fold the t-shirt into a rectangular block" --garment tshirt --seed 0 --out runs/demo
 	$(BIN)/polyfold garments --out runs/demo/garments.png
@@ -38,6 +43,10 @@ lint: $(LINTERS)
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports --no-cache --no-logo
 	PYRIGHT_PYTHON_IGNORE_WARNINGS=1 $(BIN)/pyright --project . --pythonpath $(BIN)/python
+
+# The site, in build/docs: open build/docs/index.html. A broken link fails.
+docs: $(DOCS)
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet docs build/docs
 
 # Every recorded table again, about eight hours of two cores, in runs/results; goes on where it was stopped.
 results: $(INSTALLED)

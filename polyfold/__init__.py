@@ -16,7 +16,7 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "polyfold.analysis": ("compare", "table"),
-    "polyfold.api": ("fold", "garment", "ground", "open", "run"),
+    "polyfold.api": ("describe", "fold", "garment", "ground", "open", "run"),
     "polyfold.config": ("Experiment",),
     "polyfold.errors": ("PolyfoldError", "RefusedError"),
     "polyfold.garments": ("Fabric", "Garment"),
@@ -49,6 +49,7 @@ __all__ = [
     "__version__",
     "ablate",
     "compare",
+    "describe",
     "fold",
     "garment",
     "grid",
@@ -66,7 +67,7 @@ __all__ = [
 if TYPE_CHECKING:
     from polyfold import plugins
     from polyfold.analysis import compare, table
-    from polyfold.api import fold, garment, ground, open, run
+    from polyfold.api import describe, fold, garment, ground, open, run
     from polyfold.config import Experiment
     from polyfold.errors import PolyfoldError, RefusedError
     from polyfold.garments import Fabric, Garment

@@ -41,7 +41,7 @@ class CassetteCommand:
 def _configure(parser: argparse.ArgumentParser) -> None:
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     show = actions.add_parser("show", help="what a cassette holds")
-    show.add_argument("cassette", type=Path)
+    show.add_argument("cassette", type=Path, help="file of answers that record kept")
     show.add_argument("--json", action="store_true", help="print one JSON object")
     missing = actions.add_parser("missing", help="write the requests that a run lacked, for another program")
     missing.add_argument("requests", type=Path, help="file that replay collected them in (llm.missing)")
@@ -49,7 +49,7 @@ def _configure(parser: argparse.ArgumentParser) -> None:
     missing.add_argument("--model", help="what the service calls the model")
     missing.add_argument("--out", type=Path, help="file (default: print)")
     fill = actions.add_parser("fill", help="add answers to a cassette, from a file or from a backend")
-    fill.add_argument("cassette", type=Path)
+    fill.add_argument("cassette", type=Path, help="cassette that answers are added to")
     fill.add_argument("requests", type=Path, help="file that replay collected requests in (llm.missing)")
     source = fill.add_mutually_exclusive_group(required=True)
     source.add_argument("--answers", type=Path, help="answers, in any of the forms")

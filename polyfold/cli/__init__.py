@@ -88,11 +88,20 @@ def _run(arguments: Sequence[str]) -> int:
     return parsed.run(parsed)
 
 
+class _Verbs(argparse._SubParsersAction):
+    """Verbs whose own help begins with what the list of them says."""
+
+    def add_parser(self, name: str, **settings: Any) -> argparse.ArgumentParser:
+        said = settings.get("help") or ""
+        return super().add_parser(name, **{"description": f"{said[:1].upper()}{said[1:]}.", **settings})
+
+
 class Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, the options are a ``--help`` away; and knows some types of options by name."""
 
     def __init__(self, *arguments: Any, **settings: Any) -> None:
         super().__init__(*arguments, **settings)
+        self.register("action", "parsers", _Verbs)
         for name, parse in TYPES.items():
             self.register("type", name, parse)
 
@@ -114,7 +123,7 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
         parser.error(f"there is no verb {chosen!r}; {did_you_mean(chosen, known)}")
     for verb, (module, summary) in known.items():
         told = summary.replace("%", "%%")  # argparse fills in what a % announces
-        subparser = verbs.add_parser(verb, help=told, description=told.capitalize() + ".", allow_abbrev=False)
+        subparser = verbs.add_parser(verb, help=told, allow_abbrev=False)
         if verb == chosen:
             implementation = _implementation(module)
             implementation.configure(subparser)

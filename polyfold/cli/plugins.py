@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import inspect
 import json
 import shlex
 from typing import Any
 
 from polyfold import plugins
-from polyfold.config import Experiment
-from polyfold.errors import PluginError, did_you_mean
-from polyfold.plugins._traits import Configurable
-from polyfold.plugins.hookspecs import KINDS, singular
+from polyfold.errors import PluginError
+from polyfold.plugins.hookspecs import KINDS
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -56,38 +53,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _show(name: str | None) -> int:
     """Everything that is called so: what it is, who made it, and what can be set."""
+    from polyfold.api import describe
+
     if name is None:
         raise PluginError("plugins show needs a component's name, such as csam+caso; polyfold plugins lists them")
-    kinds = [kind for kind in KINDS if name in plugins.names(kind)]
-    if not kinds:
-        known = sorted({one for kind in KINDS for one in plugins.names(kind)})
-        raise PluginError(f"no component is called {name!r}; {did_you_mean(name, known)}")
-    for kind in kinds:
-        component = plugins.find(kind, name)
-        print(f"{singular(kind)} {name}: {component.summary}  ({component.plugin.label})")
-        if kind != "tasks":
-            print("\n".join(f"  {line}" for line in _about(plugins.component_class(kind, name), singular(kind))))
+    print(describe(name))
     return 0
-
-
-def _about(cls: Any, field: str) -> list[str]:
-    """The class in its own words, then a line a parameter."""
-    words = inspect.cleandoc(cls.__doc__ or "").split("\n\n")[0].splitlines()
-    if not isinstance(cls, Configurable):
-        return [*words, "no parameters"]
-    # What an experiment has none of is set where it is named, such as a camera in a simulator's table.
-    place = f"--set {field}." if field in Experiment.model_fields else ""
-    parameters = [
-        f"{place}{name}={_default(one)}  {one.description or ''}" for name, one in cls.Config.model_fields.items()
-    ]
-    return [*words, *parameters]
-
-
-def _default(field: Any) -> str:
-    if field.is_required():
-        return "…"
-    value = field.get_default(call_default_factory=True)
-    return "" if value is None else json.dumps(value, default=str)
 
 
 def _listing() -> dict[str, Any]:

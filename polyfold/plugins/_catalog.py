@@ -8,8 +8,9 @@ from collections import defaultdict
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, field
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, distribution
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from polyfold.errors import PluginError
 
@@ -68,6 +69,19 @@ class Component:
             raise PluginError(
                 f"{what} needs {', '.join(missing)}; install with: pip install {' '.join(map(shlex.quote, missing))}"
             )
+
+    def load(self, what: str) -> Any:
+        """The class behind it. Raises PluginError if ``what``, which this is, can't be imported."""
+        if isinstance(self.target, type):
+            return self.target
+        module, _, attribute = self.target.partition(":")
+        try:
+            return getattr(import_module(module), attribute)
+        except (Exception, SystemExit) as error:
+            why, target = f"{type(error).__name__}: {error}", self.target
+            raise PluginError(
+                f"{what} of {self.plugin.label} can't be loaded from {target!r} ({why}); update or mend that plugin"
+            ) from error
 
 
 def _installed(package: str) -> bool:

@@ -11,7 +11,6 @@ import traceback
 import warnings
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import pluggy
@@ -179,17 +178,7 @@ class Host:
 
     def component_class(self, kind: str, name: str) -> Any:
         """The class behind a name. Raises PluginError as :meth:`find` does, or if the class can't be imported."""
-        component = self.find(kind, name)
-        if isinstance(component.target, type):
-            return component.target
-        module, _, attribute = component.target.partition(":")
-        try:
-            return getattr(import_module(module), attribute)
-        except (Exception, SystemExit) as error:
-            raise PluginError(
-                f"the {singular(kind)} {name!r} of {component.plugin.label} can't be loaded from "
-                f"{component.target!r} ({type(error).__name__}: {error}); update or mend that plugin"
-            ) from error
+        return self.find(kind, name).load(f"the {singular(kind)} {name!r}")
 
     def create(self, kind: str, name: str, params: Mapping[str, Any] | None = None, **components: Any) -> Any:
         """Construct a component.

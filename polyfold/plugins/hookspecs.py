@@ -147,11 +147,11 @@ def register_fabrics(register: Register) -> None:
 
 @hookspec
 def register_tasks(register: Register) -> None:
-    """Register task suites: ``target`` is ``"package:path/within/it.toml"``.
+    """Register task suites: tasks and goals in files.
 
-    A suite holds tasks, whose folds are given (:class:`polyfold.tasks.Task`), goals, which say what counts as done and
-    leave the folds to the planner (:class:`polyfold.tasks.OpenTask`), or both. ``polyfold evaluate`` runs it when a
-    study names it.
+    ``target`` is ``"package:path/within/it.toml"``. A suite holds tasks, whose folds are given
+    (:class:`polyfold.tasks.Task`), goals, which say what counts as done and leave the folds to the planner
+    (:class:`polyfold.tasks.OpenTask`), or both. ``polyfold evaluate`` runs it when a study names it.
     """
 
 

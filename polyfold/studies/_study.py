@@ -33,7 +33,8 @@ class Study(BaseModel):
         name: what results are labelled with.
         suite: registered task suite.
         tasks: patterns of ids of tasks and goals (``tshirt-*``); all by default.
-        garments: number of garments per kind, seeds from ``first_seed`` on.
+        garments: number of garments per kind.
+        first_seed: of the first garment; the others follow.
         instructions: ``first`` asks with the first wording, ``in-turn`` with the next one on each garment, ``all`` with
             each of them.
         edge_length: mesh size [m].
