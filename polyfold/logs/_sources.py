@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from polyfold.logs._fingerprint import UNREADABLE, GitState
+from polyfold.plugins._registry.carrying import SOURCE
 
 SOURCES = {".py", ".toml", ".txt", ".json", ".csv", ".md"}
 """Endings of files that count as a plugin's source."""
@@ -49,6 +50,8 @@ def source_of(target: type | str) -> Source:
 
 def _digest_of_class(target: type) -> str:
     """Of a class typed into a notebook or a script."""
+    if carried := getattr(target, SOURCE, None):
+        return hashlib.sha256(carried.encode()).hexdigest()
     try:
         return hashlib.sha256(inspect.getsource(target).encode()).hexdigest()
     except (OSError, TypeError):

@@ -20,6 +20,7 @@ names = HOST.names
 notify = HOST.notify
 observe = HOST.observe
 portable = HOST.portable
+receive = HOST.receive
 refresh = HOST.refresh
 register = HOST.register
 third_party = HOST.third_party

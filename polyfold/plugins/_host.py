@@ -20,9 +20,10 @@ from polyfold.errors._hints import misplaced_truth
 from polyfold.plugins import hookspecs
 from polyfold.plugins._border import faultless, guarded
 from polyfold.plugins._calling import call, implementations
-from polyfold.plugins._catalog import Catalog, Component, Plugin, Problem, refuse_reserved
-from polyfold.plugins._discovery import disabled_by_environment, discover, new_manager
 from polyfold.plugins._observation import Observers
+from polyfold.plugins._registry.carrying import packed, unpacked
+from polyfold.plugins._registry.catalog import Catalog, Component, Plugin, Problem, refuse_reserved
+from polyfold.plugins._registry.discovery import disabled_by_environment, discover, new_manager
 from polyfold.plugins._traits import Configurable, TakesArgument, moved_to
 from polyfold.plugins.hookspecs import singular
 
@@ -115,10 +116,17 @@ class Host:
         """(kind, name) of what :meth:`register` added in this process."""
         return list(self._by_hand)
 
-    def portable(self) -> list[tuple[str, str, str]]:
-        """(kind, name, target) of what was registered by hand and another process can import by its target."""
-        targets = {key: _importable(component.target) for key, component in self._by_hand.items()}
+    def portable(self) -> list[tuple[str, str, str | bytes]]:
+        """(kind, name, target) of what was registered by hand and can be had in another process.
+
+        The target is what to import, or the class itself, packed, where it is of a notebook or a script.
+        """
+        targets = {key: _portable(component.target) for key, component in self._by_hand.items()}
         return [(kind, name, target) for (kind, name), target in targets.items() if target is not None]
+
+    def receive(self, kind: str, name: str, target: str | bytes) -> None:
+        """Register what another process of this user's found :meth:`portable`."""
+        self.register(kind, name, unpacked(target) if isinstance(target, bytes) else target)
 
     def names(self, kind: str) -> list[str]:
         """Names of the usable components of a kind, sorted."""
@@ -269,12 +277,12 @@ def _check_kind(kind: str) -> None:
         raise PluginError(f"there is no kind of component called {kind!r}; {did_you_mean(kind, hookspecs.KINDS)}")
 
 
-def _importable(target: type | str) -> str | None:
-    """Where another process finds a class; None for one of a notebook, a script or a function."""
+def _portable(target: type | str) -> str | bytes | None:
+    """Where another process finds a class; the class itself, packed, if it is of a notebook, a script or a function."""
     if isinstance(target, str):
         return target
     if target.__module__ == "__main__" or "<locals>" in target.__qualname__:
-        return None
+        return packed(target)
     return f"{target.__module__}:{target.__qualname__}"
 
 

@@ -109,7 +109,7 @@ def on_dask(
             try:
                 client.run(plugins.refresh, plugins.third_party())
                 for kind, name, target in plugins.portable():
-                    client.run(plugins.register, kind, name, target)
+                    client.run(plugins.receive, kind, name, target)
                 running = {client.submit(work, job, pure=False): job for job in jobs}
                 # With results, as_completed of distributed 2026.8 hands out the error of a lost job as its result.
                 for future in as_completed(list(running)):
@@ -164,7 +164,7 @@ def _one_thread_each() -> AbstractContextManager[Any]:
     return patch.dict(os.environ, dict.fromkeys(_THREADS, "1"))
 
 
-def _prepare_worker(registrations: Sequence[tuple[str, str, str]], third_party: bool) -> None:
+def _prepare_worker(registrations: Sequence[tuple[str, str, str | bytes]], third_party: bool) -> None:
     """Leave Ctrl-C to the parent, end with it, and know the plugins and components that it knows."""
     import multiprocessing
     import signal
@@ -181,4 +181,4 @@ def _prepare_worker(registrations: Sequence[tuple[str, str, str]], third_party: 
     threading.Thread(target=end_with_parent, daemon=True).start()
     plugins.refresh(third_party)
     for kind, name, target in registrations:
-        plugins.register(kind, name, target)
+        plugins.receive(kind, name, target)

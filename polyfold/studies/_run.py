@@ -160,14 +160,14 @@ def _check_language_models(study: Study, missing: Sequence[Cell]) -> None:
 
 
 def _check_portable(study: Study, missing: Sequence[Cell]) -> None:
-    """Refuse components in use that a worker could not import."""
+    """Refuse components in use that can't be sent to a worker."""
     portable = {(kind, name) for kind, name, _ in plugins.portable()}
     used = _names_in_use(study, missing)
     for kind, name in plugins.by_hand():
         if (kind, name) in used and (kind, name) not in portable:
             raise ConfigError(
-                f"{name!r} was registered from a notebook or script and can't reach worker processes; "
-                "put its class into a module that can be imported, or run with workers=1"
+                f"{name!r} was registered from a notebook or script and holds on to what can't be sent to worker "
+                "processes, such as a lock or an open file; make that in its __init__, or run with workers=1"
             )
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from polyfold import plugins
 from polyfold.errors import PluginError, did_you_mean
-from polyfold.plugins._catalog import Plugin
+from polyfold.plugins._registry.catalog import Plugin
 from polyfold.plugins._traits import Configurable
 from polyfold.plugins.hookspecs import KINDS, singular
 

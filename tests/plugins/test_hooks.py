@@ -5,8 +5,8 @@ import inspect
 from pathlib import Path
 
 import polyfold
-from polyfold import plugins
 from polyfold.plugins import hookspecs
+from polyfold.plugins._host import Host
 
 CORE = sorted(Path(polyfold.__file__).parent.rglob("*.py"))
 EVENTS = "on_"
@@ -56,6 +56,6 @@ def test_every_registration_is_called(tmp_path, monkeypatch):
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: everything\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text("[polyfold]\neverything = everything\n")
     monkeypatch.syspath_prepend(tmp_path)
-    components = plugins.Host().catalog().components
+    components = Host().catalog().components
     assert all(f"from-{name[9:]}" in components[name[9:]] for name in names)
     assert {name.removeprefix(REGISTRATIONS) for name in names} == {*hookspecs.KINDS, "commands", "prompts"}

@@ -337,7 +337,7 @@ def test_workers_know_the_plugins_that_their_parent_knows(forgotten, installed):
 
 
 def test_a_plugin_that_keeps_every_command_waiting_is_named(installed, monkeypatch):
-    monkeypatch.setattr("polyfold.plugins._discovery._SLOW", 0.2)
+    monkeypatch.setattr("polyfold.plugins._registry.discovery._SLOW", 0.2)
     installed("sluggard", "import time\ntime.sleep(0.3)\n")
     with pytest.warns(
         UserWarning, match=r"'sluggard' \(sluggard 1\.0\) took \d+\.\d s to import, .* POLYFOLD_DISABLE=sluggard"
@@ -357,10 +357,10 @@ def test_the_version_is_told_without_loading_plugins(installed, tmp_path, monkey
 
 def test_a_verb_says_what_it_lacks_when_it_is_run_and_helps_before(monkeypatch, capsys, tmp_path):
     from polyfold.cli import main
-    from polyfold.plugins import _catalog
+    from polyfold.plugins._registry import catalog
 
-    installed = _catalog._installed
-    monkeypatch.setattr(_catalog, "_installed", lambda package: package != "polyfold[torch]" and installed(package))
+    installed = catalog._installed
+    monkeypatch.setattr(catalog, "_installed", lambda package: package != "polyfold[torch]" and installed(package))
     with pytest.raises(SystemExit) as ended:
         main(["train", "--help"])
     assert ended.value.code == 0

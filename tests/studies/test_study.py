@@ -3,6 +3,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -13,6 +14,7 @@ from polyfold.config import ComponentSpec
 from polyfold.errors import ConfigError, GroundingError, SimulationError
 from polyfold.evaluation import suite
 from polyfold.evaluation._references import reference_for
+from polyfold.logs import read_run
 from polyfold.studies._cells import cells
 from polyfold.studies._run import evaluate
 from polyfold.studies._study import experiment_of
@@ -131,14 +133,37 @@ def test_killed_at_any_moment_it_goes_on_without_loss_or_repetition(tmp_path):
     assert untimed(resumed) == untimed(undisturbed)
 
 
-def test_a_component_of_a_notebook_is_refused_by_workers_that_need_it_with_the_reason(tmp_path):
+def test_a_component_of_a_notebook_reaches_worker_processes(tmp_path):
+    class Local:
+        """Picks the lifted point that is farthest to the right."""
+
+        def act(self, fold_line, scene, rng):
+            lifted = scene.contour[fold_line.lifts(scene.contour)]
+            pick = lifted[lifted[:, 0].argmax()]
+            return polyfold.Action([pick], [fold_line.mirror(pick)])
+
+    polyfold.register("policies", "local", Local)
+    study = polyfold.Study(**SMALL, base={"policy": "local"})
+    try:
+        alone = evaluate(study, tmp_path / "one", progress=False)
+        together = evaluate(study, tmp_path / "two", workers=2, progress=False)
+        assert read_run(tmp_path / "one").fingerprint == read_run(tmp_path / "two").fingerprint
+    finally:
+        polyfold.plugins.unregister("policies", "local")
+    assert untimed(alone) == untimed(together)
+
+
+def test_a_component_that_cannot_be_sent_is_refused_by_workers_that_need_it_with_the_reason(tmp_path):
+    lock = threading.Lock()
+
     class Local:
         def act(self, fold_line, scene, rng):
-            raise NotImplementedError
+            with lock:
+                raise NotImplementedError
 
     polyfold.register("policies", "local", Local)
     try:
-        with pytest.raises(ConfigError, match="can't reach worker processes"):
+        with pytest.raises(ConfigError, match="such as a lock"):
             evaluate(polyfold.Study(**SMALL, base={"policy": "local"}), tmp_path / "used", workers=2, progress=False)
         unused = polyfold.Study(**{**SMALL, "garments": 1}, base={"agent": "noop"})
         assert len(evaluate(unused, tmp_path / "unused", workers=2, progress=False)) == 4

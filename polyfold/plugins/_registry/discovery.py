@@ -17,7 +17,7 @@ import pluggy
 from polyfold.errors import PluginError, did_you_mean
 from polyfold.plugins import hookspecs
 from polyfold.plugins._calling import call, implementations
-from polyfold.plugins._catalog import Catalog, Plugin, Problem
+from polyfold.plugins._registry.catalog import Catalog, Plugin, Problem
 
 GROUP = "polyfold"
 BUNDLED = "polyfold"
