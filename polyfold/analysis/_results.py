@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
+    from polyfold.analysis._tables import Table
+
 KINDS = ("square", "rectangle", "tshirt", "pants")
 """The paper's kinds of garment, in its order; others follow."""
 
@@ -98,6 +100,30 @@ class Results:
             column: heading of a column, a metric's name or a criterion's.
         """
         return view_of(self, "bars", column)
+
+    def pivot(self, rows: str, columns: str, figure: str = "success %") -> Table:
+        """A study that crosses settings (:func:`polyfold.grid`), one setting's values down, another's across.
+
+        Args:
+            rows, columns: settings that the study varies, for example ``"policy"`` and ``"agent.recover"``; over the
+                others is averaged.
+            figure: heading of a column, a metric's name or a criterion's.
+
+        Raises:
+            ConfigError: if the study varies no such setting.
+        """
+        return view_of(self, "pivot", rows, columns, figure)
+
+    def effects(self, figure: str = "success %") -> Table:
+        """What each value of each setting does over all values of the others, and what two do together beyond that.
+
+        Args:
+            figure: as in :meth:`pivot`.
+
+        Raises:
+            ConfigError: if the study crosses no settings, or some combination has no episode yet.
+        """
+        return view_of(self, "effects", figure)
 
     def dataframe(self) -> DataFrame:
         """One row an episode, for pandas: settings by name, metrics, success by criterion, seconds by stage.

@@ -12,6 +12,7 @@ from itertools import groupby
 from operator import itemgetter
 
 from polyfold.analysis._intervals import Estimate
+from polyfold.types._views import view_of
 
 CERTAIN = "†"
 """Mark of a difference that is certain."""
@@ -124,7 +125,7 @@ class Table:
         return [[row[place] for row in self.cells] for place in range(len(self.headers))]
 
     def _repr_html_(self) -> str:
-        return self.html()
+        return view_of(self, "rich")
 
     def __str__(self) -> str:
         return self.markdown()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from polyfold.analysis._columns import Column, column_of, columns_of, shared
@@ -13,7 +13,7 @@ from polyfold.analysis._results import Results
 from polyfold.analysis._tables import CERTAIN, Cell, Figure, Table
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.logs import StudyEpisodeRecord
-from polyfold.types._views import makes
+from polyfold.types._views import makes, view_of
 
 TEST = "not 0, p < 0.05 by exact McNemar and sign flips of sentences or garments, after Holm over the table's cells"
 
@@ -70,7 +70,7 @@ def table(
 
 @makes(Results, "html")
 def _html(results: Results) -> str:
-    return table(results).html()
+    return view_of(table(results), "rich")
 
 
 def _chosen(results: Results, columns: Sequence[str] | None) -> list[Column]:
@@ -127,36 +127,57 @@ def _grouped(results: Results, variant: str, groups: str) -> list[tuple[str, lis
     return [(name, records) for name, records in found if records]
 
 
-def compare(results: Results, variant: str, baseline: str, columns: Sequence[str] | None = None) -> Table:
-    """Paired differences between two variants on the same tasks, garments and wordings.
+def compare(
+    results: Results, variant: str | None = None, baseline: str | None = None, columns: Sequence[str] | None = None
+) -> Table:
+    """Paired differences between variants on the same tasks, garments and wordings.
 
     Args:
         results: of a study that has both.
-        variant, baseline: names; the difference is variant − baseline.
+        variant: which one; by default every other, one below the other.
+        baseline: what it is compared with; the difference is variant − baseline. By default the study's first.
         columns: as in :func:`table`.
+
+    Raises:
+        ConfigError: if the study has no such variant, or one alone.
     """
+    variants = list(results.study.variants)
     for name in (variant, baseline):
-        if name not in results.study.variants:
-            raise ConfigError(f"there is no variant {name!r}; {did_you_mean(name, results.study.variants)}")
+        if name is not None and name not in variants:
+            raise ConfigError(f"there is no variant {name!r}; {did_you_mean(name, variants)}")
+    base = baseline or next((name for name in variants if name != variant), variants[0])
+    ours = [variant] if variant is not None else [name for name in variants if name != base]
+    if not ours:
+        raise ConfigError(f"{results.study.name} has one variant, {base!r}; there is nothing to compare it with")
     chosen = _chosen(results, columns)
+    found = [(one, kind, *paired) for one in ours for kind, paired in _pairs(results, one, base, chosen)]
+    adjusted = iter(holm([estimate.p for *_, estimates in found for estimate in estimates]))
+    rows: list[list[Cell]] = [
+        [
+            *([] if variant is not None else [one]),
+            kind,
+            str(n),
+            *(_difference(column, value, next(adjusted)) for column, value in zip(chosen, estimates, strict=True)),
+        ]
+        for one, kind, n, estimates in found
+    ]
+    what = variant or "variant"
+    note = f"{what} − {base}, the same episodes; mean [{interval(results)}]. {CERTAIN}: {TEST}.{remarks(results)}"
+    headers = [*([] if variant is not None else ["variant"]), "kind", "n", *(column.heading for column in chosen)]
+    return Table(headers, rows, note)
+
+
+def _pairs(
+    results: Results, variant: str, baseline: str, columns: Sequence[Column]
+) -> Iterator[tuple[str, tuple[int, list[Estimate]]]]:
+    """By kind and over all: on how many episodes that both have, and the differences, a column each."""
     ours, theirs = (_by_episode(results.of(name)) for name in (variant, baseline))
     both = [key for key in ours if key in theirs]
-    labels: list[tuple[str, str]] = []
-    found: list[list[Estimate]] = []
     for kind in [*results.kinds(), "all"]:
         keys = [key for key in both if kind in ("all", ours[key].garment.kind)]
         if keys:
-            labels.append((kind, str(len(keys))))
             pair = [ours[key] for key in keys], [theirs[key] for key in keys]
-            found.append([column.between(*pair) for column in chosen])
-    adjusted = iter(holm([estimate.p for row in found for estimate in row]))
-    rows: list[list[Cell]] = [
-        [*label, *(_difference(column, value, next(adjusted)) for column, value in zip(chosen, row, strict=True))]
-        for label, row in zip(labels, found, strict=True)
-    ]
-    note = f"{variant} − {baseline}, the same episodes; mean [{interval(results)}]. {CERTAIN}: {TEST}."
-    note += remarks(results)
-    return Table(["kind", "n", *(column.heading for column in chosen)], rows, note)
+            yield kind, (len(keys), [column.between(*pair) for column in columns])
 
 
 def _difference(column: Column, value: Estimate, adjusted: float | None) -> Figure:

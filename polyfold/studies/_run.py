@@ -140,7 +140,7 @@ def _with_picture(folder: Path, cell: Cell, record: StudyEpisodeRecord, picture:
 def _with_progress(
     results: Iterable[tuple[Cell, Scored]], total: int, done: Sequence[StudyEpisodeRecord], shown: bool
 ) -> Iterator[tuple[Cell, Scored]]:
-    from tqdm import tqdm
+    from tqdm.auto import tqdm
 
     successes = sum(record.succeeded for record in done)
     with tqdm(total=total, initial=len(done), unit="episode", disable=not shown) as bar:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from html import escape
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -22,6 +23,7 @@ from polyfold.errors._hints import misplaced_truth
 from polyfold.plugins import hookspecs
 from polyfold.plugins._fabrics import LARGEST, SMALLEST
 from polyfold.plugins._inspection import moved_parameter, parameter_names
+from polyfold.types._views import view_of
 
 Overrides = dict[str, Any]
 
@@ -76,6 +78,14 @@ class Study(BaseModel):
     base: Overrides = Field(default_factory=dict)
     variants: dict[str, Overrides] = Field(default_factory=lambda: {"polyfold": {}}, min_length=1)
     factors: dict[str, dict[str, str]] = Field(default_factory=dict)
+
+    def __str__(self) -> str:
+        """What it will run, in five lines. Raises ConfigError if it can't be run as it is."""
+        return view_of(self, "text")
+
+    def _repr_html_(self) -> str:
+        lines = escape(str(self)).splitlines()
+        return f"<b>{lines[0]}</b><br>" + "<br>".join(lines[1:])
 
 
 def load(path: str | Path) -> Study:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from base64 import b64encode
+from collections.abc import Sequence
+from hashlib import sha256
 from html import escape
 from pathlib import Path
 
@@ -95,9 +97,56 @@ def result_caption(episode: Episode) -> str:
 
 @makes(Episode, "html")
 def episode_html(episode: Episode) -> str:
-    """The filmstrip and the figures as self-contained HTML."""
-    picture = b64encode(png(filmstrip_of(episode))).decode()
+    """The filmstrip, or a fold at a time in large, and the figures, as self-contained HTML without scripts."""
+    strip = png(filmstrip_of(episode))
+    labels = ["all", *(str(step.index + 1) for step in episode.steps), "result"]
+    figures = [_figure(strip, episode.instruction, result_caption(episode))]
+    before = [episode.initial_state, *(step.after for step in episode.steps)]
+    for step, state in zip(episode.steps, before, strict=False):
+        frame = _frame(step, shown(episode, state, LARGE))
+        figures.append(_figure(png(_large(frame)), frame.title, f"{step.index + 1}. {frame.title}: {frame.caption}"))
+    figures.append(_figure(png(result_of(episode)), "the result", result_caption(episode)))
+    return stepper(labels, figures) if episode.steps else figures[0]
+
+
+LARGE = 520
+"""Side of a fold's own picture [px]."""
+
+
+def _large(frame: Frame) -> NDArray[np.uint8]:
+    zoom = LARGE / max(frame.rgb.shape[:2])
+    return overlay(frame.rgb, frame.scene, frame.fold_line, frame.action, zoom=zoom, shown=frame.shown)
+
+
+def _figure(content: bytes, alternative: str, caption: str) -> str:
+    source = f"data:image/png;base64,{b64encode(content).decode()}"
     return (
-        f'<figure style="margin:0"><img style="max-width:100%" src="data:image/png;base64,{picture}" '
-        f'alt="{escape(episode.instruction)}"><figcaption>{escape(result_caption(episode))}</figcaption></figure>'
+        f'<figure style="margin:0"><img style="max-width:100%" src="{source}" alt="{escape(alternative)}">'
+        f"<figcaption>{escape(caption)}</figcaption></figure>"
     )
+
+
+def stepper(labels: Sequence[str], figures: Sequence[str]) -> str:
+    """Figures of which one is shown, and a row of buttons that choose it; without scripts, so that it stays in exports.
+
+    Args:
+        labels: of the buttons.
+        figures: HTML, as many; the first is shown first. Where no style sheet is read all are shown.
+    """
+    name = f"polyfold-{sha256(''.join(figures).encode()).hexdigest()[:12]}"
+    style, buttons = [f".{name}>input{{position:absolute;opacity:0;pointer-events:none}}.{name}>figure{{display:none}}"], []
+    style.append(
+        f".{name}>label{{display:inline-block;padding:1px 10px;margin:0 3px 6px 0;cursor:pointer;"
+        "border:1px solid rgba(128,128,128,.5);border-radius:3px}"
+    )
+    for number, label in enumerate(labels):
+        one = f"{name}-{number}"
+        style.append(f"#{one}:checked~figure:nth-of-type({number + 1}){{display:block}}")
+        style.append(
+            f"#{one}:checked+label{{background:#009660;color:#fff}}#{one}:focus-visible+label{{outline:2px solid}}"
+        )
+        checked = " checked" if number == 0 else ""
+        buttons.append(
+            f'<input type="radio" name="{name}" id="{one}"{checked}><label for="{one}">{escape(label)}</label>'
+        )
+    return f'<div class="{name}"><style>{"".join(style)}</style>{"".join(buttons)}{"".join(figures)}</div>'

@@ -61,7 +61,7 @@ def collect(plan: DemoPlan, out: Path, workers: int = 1, progress: bool = True) 
     Raises:
         ConfigError: if the folder holds other demonstrations, is in use, or no task is chosen.
     """
-    from tqdm import tqdm
+    from tqdm.auto import tqdm
 
     from polyfold.logs import exclusive
     from polyfold.studies import in_processes

@@ -97,7 +97,7 @@ def collect(
         ConfigError: if the folder holds a data set with other parameters or changed shards or is in use, the weights do
             not serve, or not even one fold or process is asked for.
     """
-    from tqdm import tqdm
+    from tqdm.auto import tqdm
 
     from polyfold.logs import exclusive
     from polyfold.studies import in_processes

@@ -107,7 +107,7 @@ def make_examples(
 
 
 def _examples_of(data: Dataset, variant: str, frame: FrameName, reward: str, scale: str, folds: int | None) -> Examples:
-    from tqdm import tqdm
+    from tqdm.auto import tqdm
 
     trials = _trials(data, variant, reward, folds)
     states = data["trial_state"][trials]

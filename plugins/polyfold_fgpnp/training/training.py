@@ -57,7 +57,7 @@ def _learn(
     run: Learner, validation: Examples, provenance: Provenance, config: TrainingConfig, out: Path, progress: bool
 ) -> None:
     """The epochs that are not done yet, each with its metrics, its snapshot if one is wanted, and a checkpoint."""
-    from tqdm import tqdm
+    from tqdm.auto import tqdm
 
     first = run.resume(out / "checkpoint.safetensors")
     with Logs(out, first) as logs, tqdm(total=config.epochs, initial=first, unit="epoch", disable=not progress) as bar:

@@ -43,7 +43,7 @@ def frequent_words(examples: Sequence[Example], least: int = 6) -> dict[str, int
 
 def train(learner: Learner, plan: Schedule, out: Path) -> None:
     """Learn to the end, with a checkpoint and a line in ``log.jsonl`` every so many steps."""
-    from tqdm import tqdm
+    from tqdm.auto import tqdm
 
     checkpoint = out / "checkpoint.safetensors"
     learner.resume(checkpoint)
