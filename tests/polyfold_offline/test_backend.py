@@ -183,6 +183,24 @@ def test_an_order_that_only_names_the_garment_is_carried_out_whatever_its_name(s
 
 
 @pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("fold the top left corner to the centre", "centre TL"),
+        ("Bring the lower-right corner into the middle.", "centre BR"),
+        ("fold the top right corner over to the bottom left corner, please", "across TR"),
+        ("take the upper left hand corner onto the opposite one", "across TL"),
+    ],
+)  # fmt: skip
+def test_a_corner_goes_to_the_middle_or_to_the_opposite_corner(text, meant):
+    from polyfold_offline.cloth.garment import Garment
+    from polyfold_offline.meaning.program import parse_program
+    from polyfold_offline.reading.orders import program_of_order
+
+    assert program_of_order(text, Garment("square", "square")) == parse_program(meant)[0]
+    assert program_of_order(text, Garment("tshirt", "tshirt")) is None
+
+
+@pytest.mark.parametrize(
     "text",
     [
         "fold the trousers", "fold up the sleeve", "fold the towel", "fold the shirt in", "fold",

@@ -16,7 +16,7 @@ from polyfold_offline.cloth.folds import (
     say,
 )
 from polyfold_offline.cloth.garment import Garment
-from polyfold_offline.meaning.program import FRACTIONS, Piece, Program
+from polyfold_offline.meaning.program import FRACTIONS, OPPOSITE, Piece, Program
 from polyfold_offline.reading.tokens import FAMILY_WORDS
 
 
@@ -41,12 +41,12 @@ def program_of_order(sentence: str, garment: Garment) -> Program | None:
     """The program of an order in the fewest words, its first length marked ``#1``; None of any other.
 
     Of the garment alone, *fold the shirt*, *fold it in half twice*; of a part and where it goes, *fold the bottom up*,
-    *fold the left sleeve*; of an edge and the opposite one, *fold the left edge onto the right edge*; of a strip, *turn
-    up the hem by 4 cm*. They hold too few words for a network to be sure of any: one name of a garment more or less
+    *fold the left sleeve*; of a corner, *fold the top left corner to the middle*; of an edge and the opposite one, *fold
+    the left edge onto the right edge*; of a strip, *turn up the hem by 4 cm*. They hold too few words for a network to be sure of any: one name of a garment more or less
     decides.
     """
     words = " ".join(sentence.split())
-    readers = (_program_of_garment, _program_of_part, _program_of_edges, _program_of_strip)
+    readers = (_program_of_garment, _program_of_part, _program_of_corner, _program_of_edges, _program_of_strip)
     return next((program for read in readers if (program := read(words, garment)) is not None), None)
 
 
@@ -83,6 +83,23 @@ def _program_of_part(words: str, garment: Garment) -> Program | None:
     return None
 
 
+def _program_of_corner(words: str, garment: Garment) -> Program | None:
+    order = _OF_CORNER.fullmatch(words)
+    if order is None or not garment.plain:
+        return None
+    corner = _corner(order["corner"])
+    if order["middle"]:
+        return (Piece("centre", corner),)
+    other = OPPOSITE[corner] if order["other"].lower() == "opposite" else _corner(order["other"])
+    return (Piece("across", corner),) if other == OPPOSITE[corner] else None
+
+
+def _corner(words: str) -> str:
+    """``upper-left`` to ``TL``."""
+    said = set(re.split("[ -]", words.lower()))
+    return ("T" if said & {"top", "upper"} else "B") + ("L" if "left" in said else "R")
+
+
 def _program_of_strip(words: str, garment: Garment) -> Program | None:
     order = _OF_STRIP.fullmatch(words)
     if order is None:
@@ -113,6 +130,15 @@ _OF_PART = re.compile(
 )
 
 
+_CLOTHS = ("cloth", "towel", "napkin", "handkerchief", "scarf", "flannel")
+_CORNER = r"(?:(?:top|upper|bottom|lower)[ -](?:left|right)|(?:left|right)[ -](?:top|upper|bottom|lower))"
+_OF_CORNER = re.compile(
+    rf"(?:please,? )?(?:fold|bring|take) (?:the )?(?P<corner>{_CORNER})(?:[ -]hand)? corner "
+    r"(?:(?:in|inwards?|over|across|diagonally) )?(?:in)?(?:to|on|onto) the "
+    rf"(?:(?P<middle>middle|cent(?:re|er))(?: of the (?:{'|'.join(_CLOTHS)}|square|rectangle|fabric))?"
+    rf"|(?P<other>opposite|{_CORNER})(?: corner| one)?)(?:,? please)?[.!]?",
+    re.IGNORECASE,
+)
 _EDGES_BY_NAME = {name: edge for edge in EDGES for name in (edge, f"{edge} edge", f"{edge} side")}
 _UPRIGHT = {"top": ("down", "downward", "downwards"), "bottom": ("up", "upward", "upwards")}
 _STRIP_EDGES = {
@@ -136,7 +162,6 @@ def _nouns(garment: Garment) -> tuple[str, ...]:
     return _NOUNS.get(garment.family, (garment.spoken, garment.kind, FAMILY_WORDS["other"]))
 
 
-_CLOTHS = ("cloth", "towel", "napkin", "handkerchief", "scarf", "flannel")
 _NOUNS = {
     "square": (*_CLOTHS, "square", "square cloth", "bandana"),
     "rectangle": (*_CLOTHS, "rectangle", "rectangular cloth", "tea towel", "dish towel", "blanket"),
