@@ -134,11 +134,13 @@ def stepper(labels: Sequence[str], figures: Sequence[str]) -> str:
         figures: HTML, as many; the first is shown first. Where no style sheet is read all are shown.
     """
     name = f"polyfold-{sha256(''.join(figures).encode()).hexdigest()[:12]}"
-    style, buttons = [f".{name}>input{{position:absolute;opacity:0;pointer-events:none}}.{name}>figure{{display:none}}"], []
-    style.append(
+    buttons: list[str] = []
+    style = [
+        f".{name}>input{{position:absolute;opacity:0;pointer-events:none}}",
+        f".{name}>figure{{display:none}}",
         f".{name}>label{{display:inline-block;padding:1px 10px;margin:0 3px 6px 0;cursor:pointer;"
-        "border:1px solid rgba(128,128,128,.5);border-radius:3px}"
-    )
+        "border:1px solid rgba(128,128,128,.5);border-radius:3px}",
+    ]
     for number, label in enumerate(labels):
         one = f"{name}-{number}"
         style.append(f"#{one}:checked~figure:nth-of-type({number + 1}){{display:block}}")

@@ -41,9 +41,9 @@ def program_of_order(sentence: str, garment: Garment) -> Program | None:
     """The program of an order in the fewest words, its first length marked ``#1``; None of any other.
 
     Of the garment alone, *fold the shirt*, *fold it in half twice*; of a part and where it goes, *fold the bottom up*,
-    *fold the left sleeve*; of a corner, *fold the top left corner to the middle*; of an edge and the opposite one, *fold
-    the left edge onto the right edge*; of a strip, *turn up the hem by 4 cm*. They hold too few words for a network to be sure of any: one name of a garment more or less
-    decides.
+    *fold the left sleeve*; of a corner, *fold the top left corner to the middle*; of an edge and the opposite one,
+    *fold the left edge onto the right edge*; of a strip, *turn up the hem by 4 cm*. They hold too few words for a
+    network to be sure of any: one name of a garment more or less decides.
     """
     words = " ".join(sentence.split())
     readers = (_program_of_garment, _program_of_part, _program_of_corner, _program_of_edges, _program_of_strip)
