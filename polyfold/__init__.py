@@ -20,11 +20,10 @@ _HOMES = {
     "polyfold.config": ("Experiment",),
     "polyfold.errors": ("PolyfoldError", "RefusedError"),
     "polyfold.garments": ("Fabric", "Garment"),
-    "polyfold.geometry": ("FoldLine",),
+    "polyfold.geometry": ("Camera", "FoldLine"),
     "polyfold.playground": ("play",),
     "polyfold.plugins": ("register",),
     "polyfold.plugins.hookspecs": ("hookimpl",),
-    "polyfold.polygon": ("FoldedModel",),
     "polyfold.studies": ("Study", "ablate", "grid", "load"),
     "polyfold.types": ("Action", "Decision", "Episode", "Observation", "Scene", "Subgoal"),
 }
@@ -33,12 +32,12 @@ _MODULES = {"plugins": "polyfold.plugins", "view": "polyfold.viz"}
 
 __all__ = [
     "Action",
+    "Camera",
     "Decision",
     "Episode",
     "Experiment",
     "Fabric",
     "FoldLine",
-    "FoldedModel",
     "Garment",
     "Observation",
     "PolyfoldError",
@@ -71,11 +70,10 @@ if TYPE_CHECKING:
     from polyfold.config import Experiment
     from polyfold.errors import PolyfoldError, RefusedError
     from polyfold.garments import Fabric, Garment
-    from polyfold.geometry import FoldLine
+    from polyfold.geometry import Camera, FoldLine
     from polyfold.playground import play
     from polyfold.plugins import register
     from polyfold.plugins.hookspecs import hookimpl
-    from polyfold.polygon import FoldedModel
     from polyfold.studies import Study, ablate, grid, load
     from polyfold.types import Action, Decision, Episode, Observation, Scene, Subgoal
 

@@ -17,3 +17,15 @@ def register_garments(register):
 def register_tasks(register):
     """Halves, thirds and packets of these garments."""
     register("wardrobe", "polyfold_wardrobe:tasks.toml", "halves, thirds and packets of five more kinds of garment")
+
+
+@hookimpl
+def register_metrics(register):
+    """What pairs of keypoints tell."""
+    register("keypoint-pairs", "polyfold_wardrobe.keypoints:KeypointPairs", "keypoints as far apart as the ideal's [%]")
+
+
+@hookimpl
+def register_criteria(register):
+    """Success as the LeHome Challenge has it."""
+    register("lehome", "polyfold_wardrobe.keypoints:AsLeHome", "every pair of keypoints as the ideal has it")

@@ -1,0 +1,169 @@
+"""A folding task as a Gymnasium environment: a step is a fold, from picks to places."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from polyfold import plugins
+from polyfold.config import Experiment
+from polyfold.errors import ActionError, ConfigError, SimulationError, did_you_mean
+from polyfold.evaluation import judge, suite
+from polyfold.tasks import Task
+from polyfold.types import Decision, Episode, Observation, SimState, Step
+from polyfold_interchange.numbers import as_action, state_after
+
+SPARE = 2
+"""Folds beyond those that a task takes, after which an episode is cut off."""
+
+
+class FoldingEnv(gymnasium.Env):
+    """Fold a garment as a task says; each reset lays another garment of its kind on the table.
+
+    Observations are ``pixels``, what the camera sees, uint8, shape (H, W, 3), and ``agent_pos``, where each arm last
+    let go, float32, shape (4,). Actions are float32, shape (8,): pick and place of the first arm, then of the second,
+    each from −1 (left, top) to 1 (right, bottom); arms whose picks are together fold as one. The reward is 1 when the
+    task is done and 0 before: when it is at least ``fair`` beside the ideal (:class:`polyfold.types.Fidelity`); then
+    the episode ends. ``info`` has ``is_success``, ``iou`` and ``moved_part_mm``.
+
+    Args:
+        task: id of a task, for example ``"square-triangle-top_left"``.
+        suite_name: of which suite.
+        seeds: first and last garment; a reset draws one, or takes ``options={"garment": SEED}``. By default those that
+            baselines may train on.
+        max_folds: after which an episode is cut off; by default two more than the task takes.
+        edge_length: of the mesh [m].
+        experiment: simulator and fabric; by default those that need no key and no GPU.
+        render_mode: ``rgb_array``, or None.
+
+    Raises:
+        ConfigError: if there is no such task.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 1}  # noqa: RUF012  (the base class's)
+
+    def __init__(
+        self,
+        task: str = "square-triangle-top_left",
+        suite_name: str = "polyfold70",
+        seeds: tuple[int, int] = (1000, 1099),
+        max_folds: int | None = None,
+        edge_length: float = 0.018,
+        experiment: Experiment | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        self._task = _task(task, suite_name)
+        self._seeds, self._edge_length = seeds, edge_length
+        self._most = len(self._task.steps) + SPARE if max_folds is None else max_folds
+        self._experiment = experiment or Experiment()
+        self.render_mode = render_mode
+        self._simulator = plugins.create_chosen(self._experiment, "simulator")
+        self._begun: Episode | None = None
+        self._steps: list[Step] = []
+        self._numbers: NDArray[np.float32] | None = None
+        camera = self._lie(seeds[0], 0).camera
+        self.observation_space = gymnasium.spaces.Dict({
+            "pixels": gymnasium.spaces.Box(0, 255, (camera.height, camera.width, 3), np.uint8),
+            "agent_pos": gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32),
+        })  # fmt: skip
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (8,), np.float32)
+
+    @property
+    def task(self) -> str:
+        """The task's id."""
+        return self._task.id
+
+    @property
+    def task_description(self) -> str:
+        """The task as a sentence."""
+        return self._task.instructions[0] if self._task.instructions else self._task.id
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Lay a garment on the table: drawn, or the one that ``options`` names."""
+        super().reset(seed=seed)
+        garment = (options or {}).get("garment")
+        if garment is None:
+            garment = int(self.np_random.integers(self._seeds[0], self._seeds[1] + 1))
+        self._lie(int(garment), int(self.np_random.integers(2**31)))
+        return self._observation(), {"garment": int(garment), "is_success": False}
+
+    def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
+        """Fold once."""
+        if self._begun is None:
+            raise gymnasium.error.ResetNeeded("call reset before step")
+        self._numbers = np.clip(np.asarray(action, np.float32).reshape(8), -1.0, 1.0)
+        info: dict[str, Any] = {}
+        try:
+            self._fold(self._numbers)
+        except (ActionError, SimulationError) as error:
+            info["fault"] = str(error)  # the cloth lies as before
+        told = judge(self._episode(), self._task.id).fidelity
+        done = told is not None and told.verdict in ("good", "fair")
+        if told is not None:
+            info |= {"iou": told.iou, "moved_part_mm": told.moved_part_error_mm}
+        info["is_success"] = done
+        self._count += 1
+        return self._observation(), float(done), done, not done and self._count >= self._most, info
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """What the camera sees."""
+        return None if self.render_mode is None else self._seen.rgb
+
+    def close(self) -> None:
+        """Release the simulator."""
+        self._simulator.close()
+
+    def _lie(self, garment: int, seed: int) -> Observation:
+        """A garment, flat, and nothing folded yet."""
+        chosen = plugins.generate_garment(self._task.garment, garment, self._edge_length, self._experiment.fabric)
+        self._seen = self._simulator.reset(chosen, seed)
+        state = self._simulator.state()
+        self._steps, self._numbers, self._count = [], None, 0
+        self._begun = Episode(
+            instruction=self.task_description, garment=chosen, seed=seed, agent_seed=seed, experiment=self._experiment,
+            privileged=False, subgoals=(), steps=(), start=self._seen, final=self._seen, initial_state=state,
+            final_state=state, calls=(), seconds={},
+        )  # fmt: skip
+        return self._seen
+
+    def _fold(self, numbers: NDArray[np.float32]) -> None:
+        decision = Decision(as_action(numbers, self._seen.camera))
+        before = self._seen
+        self._seen = self._simulator.execute(decision.action)
+        self._steps.append(_step(len(self._steps), decision, before, self._simulator.state()))
+
+    def _episode(self) -> Episode:
+        from dataclasses import replace
+
+        assert self._begun is not None
+        return replace(self._begun, steps=tuple(self._steps), final=self._seen, final_state=self._simulator.state())
+
+    def _observation(self) -> dict[str, Any]:
+        return {"pixels": self._seen.rgb.copy(), "agent_pos": state_after(self._numbers)}
+
+
+def _task(name: str, suite_name: str) -> Task:
+    tasks = {entry.id: entry for entry in suite(suite_name).entries if isinstance(entry, Task)}
+    if name not in tasks:
+        raise ConfigError(f"no task of {suite_name} is called {name!r}; {did_you_mean(name, tasks)}")
+    return tasks[name]
+
+
+def _step(index: int, decision: Decision, seen: Observation, after: SimState) -> Step:
+    return Step(index, None, None, None, decision.action, seen, {}, after)
+
+
+def register() -> None:
+    """Make the environment known to Gymnasium as ``polyfold/TASK``, for every task of the paper's suite."""
+    for entry in suite("polyfold70").entries:
+        name = f"polyfold/{entry.id}"
+        if isinstance(entry, Task) and name not in gymnasium.registry:
+            gymnasium.register(
+                name, entry_point="polyfold_interchange.environment:FoldingEnv", kwargs={"task": entry.id},
+                order_enforce=True,
+            )  # fmt: skip
