@@ -10,9 +10,17 @@ from polyfold.studies import Study
 from polyfold.studies._cell import PICTURES
 from polyfold.studies._study import made_of, with_variants
 
+EPILOG = (
+    "A study is a TOML file: name, suite, tasks, garments, first_seed, instructions, edge_length, sizes, split, steps, "
+    "reference, criteria, metrics, published, seed, [base] for what all variants share, [variants.NAME] for what tells "
+    "each from the others, factors. All but the name may be left out; what each means: "
+    "python -c 'import polyfold; help(polyfold.Study)', or docs/studies.md."
+)
+
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Add the options."""
+    parser.epilog = EPILOG
     parser.add_argument("config", type=Path, help="study, for example experiments/smoke.toml")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="run directory; resumed if it exists")
     parser.add_argument(

@@ -66,6 +66,8 @@ def test_every_public_module_has_a_page_and_every_name_is_on_it():
 
 def test_every_setting_of_a_study_is_told_of():
     assert set(studies.descriptions()) == set(Study.model_fields)
+    words = set(re.findall(r"\w+", dict(command_line.verbs())["evaluate"].epilog))
+    assert set(Study.model_fields) <= words
 
 
 def test_every_kind_has_its_page_with_what_it_is_held_to():
