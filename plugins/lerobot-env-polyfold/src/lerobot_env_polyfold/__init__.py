@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from lerobot.configs.types import FeatureType, PolicyFeature
-from lerobot.envs.configs import EnvConfig
-from lerobot.utils.constants import ACTION, OBS_IMAGE, OBS_STATE
+from lerobot.configs.types import FeatureType, PolicyFeature  # pyright: ignore[reportMissingImports]
+from lerobot.envs.configs import EnvConfig  # pyright: ignore[reportMissingImports]
+from lerobot.utils.constants import ACTION, OBS_IMAGE, OBS_STATE  # pyright: ignore[reportMissingImports]
 from polyfold_interchange.environment import register
 
 register()
