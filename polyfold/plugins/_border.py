@@ -14,10 +14,13 @@ from functools import update_wrapper
 from importlib import import_module
 from typing import Any
 
-from polyfold.errors import PluginError, PolyfoldError
+from polyfold.errors import ActionError, PluginError, PolyfoldError
 
 PASSED_ON = (PolyfoldError, OSError, MemoryError)
 """Errors that say by themselves what to do."""
+CHOOSING = ("act", "plan")
+"""Methods that choose picks and places: one that can't be is theirs, where other components are told of it."""
+
 Wrong = Callable[[Any, Sequence[Any]], str | None]
 """Says of what a method returned, and of what it was handed, what is wrong; None if nothing is."""
 
@@ -85,6 +88,10 @@ class _Guard:
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         try:
             returned = self._method(*arguments, **named)
+        except ActionError as error:
+            if self._name not in CHOOSING:
+                raise
+            raise ActionError(f"{self._owner} chose what can't be done: {error}") from error
         except PASSED_ON:
             raise
         except Exception as error:

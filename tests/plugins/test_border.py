@@ -8,7 +8,7 @@ import pytest
 
 import polyfold
 from polyfold import plugins
-from polyfold.errors import PluginError
+from polyfold.errors import ActionError, PluginError
 from polyfold.plugins import hardware, interfaces
 from polyfold.plugins._border import METHODS
 from polyfold.types import Action, Observation
@@ -128,6 +128,12 @@ def test_errors_that_say_what_to_do_pass_as_they_are(registered):
     name = registered("policies", policy(act=act))
     with pytest.raises(FileNotFoundError):
         polyfold.fold("fold it in half", garment="square", seed=0, policy=name)
+
+
+def test_picks_and_places_that_cannot_be_are_told_with_who_chose_them(registered):
+    name = registered("policies", policy(act=lambda self, fold_line, scene, rng: Action([[1.0, 2.0]], [[1.0]])))
+    with pytest.raises(ActionError, match=r"the policy 'mine'.+one \(x, y\) pixel per arm"):
+        plugins.create("policies", name).act(None, None, None)
 
 
 def test_what_is_right_folds_as_ever(registered):
