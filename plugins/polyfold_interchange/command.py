@@ -41,6 +41,9 @@ class Export:
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Fold what is missing, then write the data set."""
+        from polyfold import plugins
+
+        plugins.find("agents", arguments.agent)
         jobs = _jobs(arguments.suite, arguments.split, arguments.tasks, arguments.first_seed, arguments.garments)
         fold = partial(recorded, arguments.suite, arguments.agent, arguments.edge_length, arguments.all)
         settings = [arguments.suite, arguments.agent, arguments.edge_length, arguments.all]
@@ -75,6 +78,10 @@ def export(jobs: Sequence[Job], fold: Any, out: Path, workers: int, settings: An
             _keep(recording, _part(parts, job))
             bar.update()
     found = [one for job in jobs if (one := _read(_part(parts, job))) is not None]
+    if not found:
+        raise ConfigError(
+            "no episode succeeded, so there is nothing to export; keep failures with --all, or change --agent"
+        )
     write_dataset(found, out)
     for job in jobs:
         _part(parts, job).unlink()
@@ -96,7 +103,7 @@ def recorded(suite_name: str, agent: str, edge_length: float, failed_too: bool, 
     garment = plugins.generate_garment(task.garment, seed, edge_length)
     sentence = task.instructions[seed % len(task.instructions)] if task.instructions else task.id
     episode = run_episode(Experiment.of(agent=agent), garment, sentence, seed, task=task)
-    told = judge(episode, task.id).fidelity if episode.steps else None
+    told = judge(episode, task).fidelity if episode.steps else None
     good = told is not None and told.verdict in ("good", "fair")
     return Recording.of(episode) if episode.steps and (good or failed_too) else None
 

@@ -55,6 +55,8 @@ class FoldingEnv(gymnasium.Env):
         experiment: Experiment | None = None,
         render_mode: str | None = None,
     ) -> None:
+        if seeds[0] > seeds[1]:
+            raise ConfigError(f"seeds are the first and the last garment, not {seeds}; give them in order")
         self._task = _task(task, suite_name)
         self._seeds, self._edge_length = seeds, edge_length
         self._most = len(self._task.steps) + SPARE if max_folds is None else max_folds
@@ -86,7 +88,10 @@ class FoldingEnv(gymnasium.Env):
     ) -> tuple[dict[str, Any], dict[str, Any]]:
         """Lay a garment on the table: drawn, or the one that ``options`` names."""
         super().reset(seed=seed)
-        garment = (options or {}).get("garment")
+        options = dict(options or {})
+        garment = options.pop("garment", None)
+        if options or not isinstance(garment, int | np.integer | None):
+            raise ConfigError(f"a reset takes options={{'garment': SEED}} and nothing else, not {options or garment!r}")
         if garment is None:
             garment = int(self.np_random.integers(self._seeds[0], self._seeds[1] + 1))
         self._lie(int(garment), int(self.np_random.integers(2**31)))
@@ -96,13 +101,17 @@ class FoldingEnv(gymnasium.Env):
         """Fold once."""
         if self._begun is None:
             raise gymnasium.error.ResetNeeded("call reset before step")
-        self._numbers = np.clip(np.asarray(action, np.float32).reshape(8), -1.0, 1.0)
+        numbers = np.asarray(action, np.float32)
+        if numbers.shape != (8,) or not np.isfinite(numbers).all():
+            raise ConfigError("an action is 8 finite numbers from -1 to 1: pick and place of each arm, x and y")
+        numbers = np.clip(numbers, -1.0, 1.0)
         info: dict[str, Any] = {}
         try:
-            self._fold(self._numbers)
+            self._fold(numbers)
+            self._numbers = numbers
         except (ActionError, SimulationError) as error:
             info["fault"] = str(error)  # the cloth lies as before
-        told = judge(self._episode(), self._task.id).fidelity
+        told = judge(self._episode(), self._task).fidelity
         done = told is not None and told.verdict in ("good", "fair")
         if told is not None:
             info |= {"iou": told.iou, "moved_part_mm": told.moved_part_error_mm}

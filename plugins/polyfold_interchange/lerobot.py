@@ -7,6 +7,7 @@ is a frame. What the numbers are stands in :mod:`polyfold_interchange.numbers` a
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -54,7 +55,7 @@ class Recording:
         return cls(episode.instruction, np.stack([step.observation.rgb for step in steps]), states, actions)
 
 
-def write_dataset(episodes: Iterable[Episode | Recording], folder: str | Path) -> Path:
+def write_dataset(episodes: Iterable[Episode | Recording] | Episode | Recording, folder: str | Path) -> Path:
     """Write episodes as a LeRobotDataset.
 
     Args:
@@ -67,7 +68,8 @@ def write_dataset(episodes: Iterable[Episode | Recording], folder: str | Path) -
     Raises:
         ConfigError: if the folder holds something, there is no episode, or pictures differ in size.
     """
-    recordings = [one if isinstance(one, Recording) else Recording.of(one) for one in episodes]
+    several = [episodes] if isinstance(episodes, Episode | Recording) else episodes
+    recordings = [one if isinstance(one, Recording) else Recording.of(one) for one in several]
     folder = Path(folder)
     if folder.exists() and any(folder.iterdir()):
         raise ConfigError(f"{folder} holds something already; choose another folder")
@@ -75,14 +77,19 @@ def write_dataset(episodes: Iterable[Episode | Recording], folder: str | Path) -
         raise ConfigError("there is no episode to export; fold something first")
     if len({one.pictures.shape[1:] for one in recordings}) > 1:
         raise ConfigError("the episodes' pictures differ in size; export those of one camera at a time")
-    folder.mkdir(parents=True, exist_ok=True)
-    _write_video(recordings, folder / "videos" / CAMERA / f"{PLACE}.mp4")
-    _write_frames(recordings, folder / "data" / f"{PLACE}.parquet")
-    _write_episodes(recordings, folder / "meta" / "episodes" / f"{PLACE}.parquet")
-    _write_tasks(_sentences(recordings), folder / "meta" / "tasks.parquet")
-    # Last, since a data set without it is none: what was broken off is not taken for a whole one.
-    _write_json(_statistics(recordings), folder / "meta" / "stats.json")
-    _write_json(_info(recordings), folder / "meta" / "info.json")
+    # Beside it first, so that what was broken off is not taken for a whole one and can be written again.
+    part = folder.with_name(f".{folder.name}.part")
+    shutil.rmtree(part, ignore_errors=True)
+    part.mkdir(parents=True)
+    _write_video(recordings, part / "videos" / CAMERA / f"{PLACE}.mp4")
+    _write_frames(recordings, part / "data" / f"{PLACE}.parquet")
+    _write_episodes(recordings, part / "meta" / "episodes" / f"{PLACE}.parquet")
+    _write_tasks(_sentences(recordings), part / "meta" / "tasks.parquet")
+    _write_json(_statistics(recordings), part / "meta" / "stats.json")
+    _write_json(_info(recordings), part / "meta" / "info.json")
+    if folder.exists():
+        folder.rmdir()
+    part.replace(folder)
     return folder
 
 

@@ -24,9 +24,12 @@ TOGETHER = 0.15
 APART = 0.7
 """Pairs that the ideal leaves apart keep at least this share of their distance there."""
 
-BROUGHT, LEFT = 0.4, 0.9
-"""A pair is brought together where it keeps at most the first share of its flat distance, left where at least the
-other."""
+NEARER = 0.85
+"""A pair is brought together where an end at the limit is at most this share of its flat distance: else an untouched
+garment would pass."""
+
+LEFT = 0.9
+"""A pair is left apart where it keeps at least this share of its flat distance."""
 
 FAR = 0.25
 """Pairs that are nearer than this share of the span while flat say nothing."""
@@ -52,8 +55,10 @@ class AsLeHome:
 
 
 def _share(result: Outcome, ideal: Outcome) -> float:
-    found = [holds for _, holds in conditions(result, ideal)]
-    return sum(found) / len(found) if found else math.nan
+    found = list(conditions(result, ideal))
+    if not any(" at " in words for words, _ in found):
+        return math.nan  # doing nothing would meet all that is asked
+    return sum(holds for _, holds in found) / len(found)
 
 
 def conditions(result: Outcome, ideal: Outcome) -> Iterator[tuple[str, bool]]:
@@ -67,7 +72,7 @@ def conditions(result: Outcome, ideal: Outcome) -> Iterator[tuple[str, bool]]:
         before, there, here = (math.dist(points[one], points[other]) for points in (flat, wanted, ended))
         if before < FAR * span:
             continue
-        if there <= BROUGHT * before:
+        if there + TOGETHER * span <= NEARER * before:
             yield f"{one} at {other}", here <= there + TOGETHER * span
         elif there >= LEFT * before:
             yield f"{one} away from {other}", here >= APART * there

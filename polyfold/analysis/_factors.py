@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
@@ -33,6 +35,8 @@ def pivot(results: Results, rows: str, columns: str, figure: str) -> Table:
     for name in (rows, columns):
         if name not in levels:
             raise ConfigError(f"{results.study.name} varies no {name!r}; {did_you_mean(name, levels)}")
+    if rows == columns:
+        raise ConfigError(f"{rows!r} can't be both down and across; name two of {', '.join(levels)}")
     column = column_of(results.run, figure)
     cells: list[list[Cell]] = []
     for down in levels[rows]:
@@ -58,7 +62,9 @@ def effects(results: Results, figure: str) -> Table:
         """Mean over episodes of what the variants of one sign have more than those of the other."""
         sides = [[values[one] for one, sign in signs.items() if sign == side] for side in (1, -1)]
         ours, theirs = ([_mean_of(side, key, times) for key in keys] for side in sides)
-        return difference(ours, theirs, *clusters)
+        found = difference(ours, theirs, *clusters)
+        # Episodes that do not differ at all say nothing of how others would.
+        return replace(found, low=-math.inf, high=math.inf) if found.low == found.high else found
 
     found = [(what, estimate(signs, 1)) for what, signs in _main(levels, values)]
     found += [(what, estimate(signs, 2)) for what, signs in _interactions(levels, values)]

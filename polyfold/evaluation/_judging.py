@@ -45,8 +45,12 @@ def _cloth(episode: Episode, seen: Observation) -> NDArray[np.bool_]:
         return np.zeros(seen.depth.shape, bool)
 
 
-def judge(episode: Episode, task_id: str | None = None) -> Episode:
+def judge(episode: Episode, asked_for: str | Task | None = None) -> Episode:
     """The episode with its fidelity.
+
+    Args:
+        episode: what happened.
+        asked_for: the task that the caller names, or its id among the installed suites.
 
     The ideal lines come from the true keypoints and the task that is named, else the task one of whose own sentences
     was said, else the one that the plan is recognised as; else they are the planned lines. The fidelity says which
@@ -57,9 +61,10 @@ def judge(episode: Episode, task_id: str | None = None) -> Episode:
     kind = episode.garment.kind
     tasks = known_tasks(kind)
     asked = [task for task in tasks if _plain(episode.instruction) in map(_plain, task.instructions)]
-    if task_id is not None:
-        judged = _beside(episode, find_task(task_id, kind), "task")
-        return judged if not asked or task_id in (task.id for task in asked) else _doubted(judged, asked[0])
+    if asked_for is not None:
+        named = asked_for if isinstance(asked_for, Task) else find_task(asked_for, kind)
+        judged = _beside(episode, named, "task")
+        return judged if not asked or named.id in (task.id for task in asked) else _doubted(judged, asked[0])
     if asked:
         # A sentence may ask for several tasks alike, such as those that differ in what goes first.
         judged = [_beside(episode, task, "sentence") for task in asked]

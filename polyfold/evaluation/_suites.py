@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 
 from polyfold import plugins
 from polyfold.errors import ConfigError, PluginError, did_you_mean
@@ -11,13 +12,30 @@ from polyfold.tasks import OpenTask, Suite, Task, load_suite
 
 
 def suite(name: str) -> Suite:
-    """A registered task suite by name, its goals checked against the suite whose tasks they accept.
+    """A task suite by its registered name, or by its file, its goals checked against the suite whose tasks they accept.
+
+    Args:
+        name: for example ``polyfold70``; or the path of a file, which ends in ``.toml``.
 
     Raises:
         PluginError: if there is no such suite.
         ConfigError: if its file is wrong.
     """
-    return _checked(name, str(plugins.find("tasks", name).target))
+    return _checked(name, _target(name), _stamp(name))
+
+
+def is_file(name: str) -> bool:
+    """Whether a suite is named by its file."""
+    return name.endswith(".toml")
+
+
+def _target(name: str) -> str:
+    return name if is_file(name) else str(plugins.find("tasks", name).target)
+
+
+def _stamp(name: str) -> int:
+    """Tells a file that was changed since."""
+    return Path(name).stat().st_mtime_ns if is_file(name) and Path(name).exists() else 0
 
 
 def accepted_tasks(name: str, goal: OpenTask) -> tuple[Task, ...]:
@@ -26,8 +44,8 @@ def accepted_tasks(name: str, goal: OpenTask) -> tuple[Task, ...]:
 
 
 @cache
-def _checked(name: str, target: str) -> Suite:
-    found = _loaded(target)
+def _checked(name: str, target: str, stamp: int) -> Suite:
+    found = _loaded(target, stamp)
     _check_points(target, found)
     for goal in found.goals:
         _accepted(name, found, goal)
@@ -45,19 +63,19 @@ def _check_points(where: str, found: Suite) -> None:
 
 
 @cache
-def _loaded(target: str) -> Suite:
+def _loaded(target: str, stamp: int) -> Suite:
     return load_suite(target)
 
 
 def _loaded_by_name(name: str) -> Suite:
     """Without a check of its own goals, so that two suites may accept tasks of each other."""
-    return _loaded(str(plugins.find("tasks", name).target))
+    return _loaded(_target(name), _stamp(name))
 
 
 def _accepted(name: str, found: Suite, goal: OpenTask) -> tuple[Task, ...]:
     if not goal.accept:
         return ()
-    where = str(plugins.find("tasks", name).target)
+    where = _target(name)
     try:
         source = found if found.accept_from in (name, found.name) else _loaded_by_name(found.accept_from)
     except PluginError as error:

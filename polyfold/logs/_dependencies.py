@@ -61,6 +61,9 @@ def fingerprint(
     sources = {f"polyfold.{name.removesuffix('.py')}": digest_of(core / name) for name in CORE}
     folders = {"polyfold": core}
     for kind, spec in _once_each(specs):
+        if kind == "tasks" and spec.name.endswith(".toml"):  # a suite by its file
+            files[spec.name] = digest_of_file(Path(spec.name))
+            continue
         component = plugins.find(kind, spec.name.partition(":")[0])
         if component.plugin.distribution:
             distributions[component.plugin.distribution] = component.plugin.version

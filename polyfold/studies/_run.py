@@ -15,6 +15,7 @@ from pathlib import Path
 from polyfold import plugins
 from polyfold.errors import ConfigError
 from polyfold.evaluation._criteria import criteria
+from polyfold.evaluation._suites import is_file
 from polyfold.logs import RunDirectory, StudyEpisodeRecord, exclusive
 from polyfold.logs._components import components_in_use
 from polyfold.logs._dependencies import fingerprint
@@ -174,7 +175,8 @@ def _check_portable(study: Study, missing: Sequence[Cell]) -> None:
 def _names_in_use(study: Study, missing: Sequence[Cell]) -> set[tuple[str, str]]:
     """(kind, name) of the components that the missing episodes take, those of every episode included."""
     used = {("metrics", name) for name in plugins.names("metrics")}
-    used |= {("criteria", name) for name in study.criteria} | {("tasks", study.suite), ("agents", "oracle")}
+    used |= {("criteria", name) for name in study.criteria} | {("agents", "oracle")}
+    used |= set() if is_file(study.suite) else {("tasks", study.suite)}
     kinds = sorted({cell.garment for cell in missing})
     used |= {("garments", kind) for kind in kinds}
     for variant in dict.fromkeys(cell.variant for cell in missing):

@@ -9,6 +9,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
@@ -116,10 +117,17 @@ def ablate(base: Study, path: str, values: Sequence[Any], names: Sequence[str] |
 
 def grid(base: Study, settings: dict[str, Sequence[Any]], names: Sequence[str] | None = None) -> Study:
     """A study with one variant per combination of values; see :func:`ablate`."""
+    for path, values in settings.items():
+        if isinstance(values, str | bytes) or not isinstance(values, Sequence) or not values:
+            raise ConfigError(f'{path} needs a list of values, not {values!r}; for example ["caso", "farthest"]')
+    if not settings:
+        raise ConfigError('a grid needs settings; for example {"policy": ["caso", "farthest"]}')
     combinations = [dict(zip(settings, values, strict=True)) for values in itertools.product(*settings.values())]
     names = names or [", ".join(_shown(value) for value in combination.values()) for combination in combinations]
     if len(names) != len(combinations):
         raise ConfigError(f"{len(combinations)} variants need as many names, not {len(names)}")
+    if twice := [name for name, count in Counter(names).items() if count > 1]:
+        raise ConfigError(f"two variants would be called {twice[0]!r}; give each its own with names=[...]")
     common = next(iter(base.variants.values()))
     variants = {name: {**common, **combination} for name, combination in zip(names, combinations, strict=True)}
     factors = {
@@ -157,7 +165,10 @@ def with_variants(study: Study, names: Sequence[str]) -> Study:
 
 
 def _shown(value: Any) -> str:
-    return str(value["name"]) if isinstance(value, dict) and "name" in value else str(value)
+    if not isinstance(value, dict) or "name" not in value:
+        return str(value)
+    params = value.get("params", {key: one for key, one in value.items() if key != "name"})
+    return " ".join([str(value["name"]), *(f"{key}={one}" for key, one in params.items())])
 
 
 def experiment_of(study: Study, variant: str) -> Experiment:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Sequence
-from hashlib import sha256
 from html import escape
 from pathlib import Path
+from secrets import token_hex
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,7 +133,8 @@ def stepper(labels: Sequence[str], figures: Sequence[str]) -> str:
         labels: of the buttons.
         figures: HTML, as many; the first is shown first. Where no style sheet is read all are shown.
     """
-    name = f"polyfold-{sha256(''.join(figures).encode()).hexdigest()[:12]}"
+    # The same episode may be shown twice on a page: each copy answers to its own buttons.
+    name = f"polyfold-{token_hex(6)}"
     buttons: list[str] = []
     style = [
         f".{name}>input{{position:absolute;opacity:0;pointer-events:none}}",
