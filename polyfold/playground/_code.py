@@ -29,7 +29,8 @@ def as_code(garment: Garment, seed: int, experiment: Experiment, moves: Iterable
     lines = ["import polyfold", ""]
     arguments = [repr(garment.kind)]
     if not _is_drawn(garment, seed, experiment):
-        lines += [f"# `garment` is the one that was played with: {garment.name}, made by your own line"]
+        lines += [f"# the one that was played with, {garment.name}: with all that you made it with"]
+        lines += [f"garment = polyfold.garment({garment.kind!r}, seed={garment.seed or 0})"]
         arguments = ["garment"]
     arguments += [f"seed={seed}"] if seed else []
     arguments += [f"{name}={_plain(value)!r}" for name, value in _chosen(experiment).items()]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,7 +15,7 @@ import numpy as np
 from polyfold import plugins
 from polyfold.api import garment as named_garment
 from polyfold.api._fold import GIF_RATE, save
-from polyfold.config import Experiment
+from polyfold.config import USUAL, ComponentSpec, Experiment
 from polyfold.errors import ConfigError, GroundingError
 from polyfold.evaluation import judge
 from polyfold.garments import Garment
@@ -24,7 +24,7 @@ from polyfold.plugins._fabrics import garment_template
 from polyfold.plugins.interfaces import RecordsMotion, action_map_later
 from polyfold.rollout._inputs import Start
 from polyfold.rollout._loop import build_agent
-from polyfold.rollout._rollout import Rollout
+from polyfold.rollout._rollout import Mark, Rollout
 from polyfold.rollout._sentences import plain
 from polyfold.rollout._transcript import Transcript
 from polyfold.types import Action, Decision, Episode, Observation, Scene, SimState, Step
@@ -41,6 +41,7 @@ class Turn:
 
     move: Move
     steps: tuple[Step, ...]
+    before: Mark
 
     def in_words(self) -> str:
         """What was asked for, and what came of it."""
@@ -75,6 +76,10 @@ def play(
     experiment = (experiment or Experiment()).override(components)
     if isinstance(garment, str):
         garment = named_garment(garment, seed=seed, experiment=experiment)
+    elif not isinstance(garment, Garment):
+        raise ConfigError(f"{garment!r} is no garment; give a kind, such as 'tshirt', or one of polyfold.garment(...)")
+    elif experiment.fabric != ComponentSpec(name=USUAL):
+        garment = replace(garment, fabric=plugins.make_fabric(experiment.fabric, garment.kind))
     return Playground(garment, seed, experiment)
 
 
@@ -110,6 +115,7 @@ class Playground:
             )
         )
         self.turns: list[Turn] = []
+        self._closed: Episode | None = None
         self._scene: Scene | None = None
         self._moments: list[Moment] = []
         self._watcher: Callable[[Observation], Any] | None = None
@@ -162,6 +168,8 @@ class Playground:
             ActionError: if a pick or place lies outside the picture.
             GroundingError: if no cloth is in sight.
         """
+        self._refuse_if_closed()
+        _refuse_what_is_no_move(move, FoldLine | Action)
         scene = self.scene
         if isinstance(move, Action):
             move.check_inside(self.observation.camera)
@@ -187,21 +195,31 @@ class Playground:
             RefusedError: if the sentence can't be understood or done.
             PolyfoldError: as of :meth:`propose`, or if planning or the simulation fail; folds made until then stay.
         """
-        before = len(self.steps)
+        self._refuse_if_closed()
+        _refuse_what_is_no_move(move, str | FoldLine | Action)
+        before = self._rollout.mark()
         try:
             if isinstance(move, str):
                 self._follow(plain(move))
             else:
                 self._rollout.execute(self.propose(move))
-        except KeyboardInterrupt:
-            self._simulator.restore(self.state)
+        except BaseException:
+            self._keep_what_was_finished(before)
             raise
-        finally:
-            made = self.steps[before:]
-            if made:
-                self.turns.append(Turn(move, made))
-                self._scene = None
+        made = self.steps[before.steps :]
+        if made:
+            self.turns.append(Turn(move, made, before))
+            self._scene = None
         return made
+
+    def _keep_what_was_finished(self, before: Mark) -> None:
+        """After a fold that was broken off: the cloth lies as after the last whole one, each a move of its own."""
+        self._simulator.restore(self.state)
+        self._moments = [moment for moment in self._moments if moment.fold < len(self.steps)]
+        for step in self.steps[before.steps :]:
+            mark = before._replace(steps=step.index)
+            self.turns.append(Turn(step.action, (step,), mark))
+            self._scene = None
 
     def _follow(self, sentence: str) -> None:
         error = self._rollout.follow(self._agent, sentence, self.seed, self.seed)
@@ -210,11 +228,11 @@ class Playground:
 
     def undo(self) -> bool:
         """Take back what the last :meth:`fold` did; False if nothing was done yet."""
+        self._refuse_if_closed()
         if not self.turns:
             return False
-        turn = self.turns.pop()
-        for _ in turn.steps:
-            self._rollout.take_back()
+        self._rollout.go_back(self.turns[-1].before)
+        self.turns.pop()
         self._moments = [moment for moment in self._moments if moment.fold < len(self.steps)]
         self._scene = None
         return True
@@ -222,7 +240,8 @@ class Playground:
     @property
     def episode(self) -> Episode:
         """What was done so far, judged as :func:`polyfold.fold` judges; it shows itself as a filmstrip."""
-        return judge(replace(self._rollout.episode(self.seed, self.seed), instruction="; then ".join(self._said())))
+        done = self._closed or self._rollout.episode(self.seed, self.seed)
+        return judge(replace(done, instruction=self._in_words()))
 
     def save(self, folder: str | Path) -> Path:
         """Write what was done as ``polyfold fold --out`` does: ``episode.json``, ``filmstrip.png``, ``fold.gif``.
@@ -231,7 +250,9 @@ class Playground:
             ConfigError: if nothing was done yet, or the folder can't be written to.
         """
         self._refuse_if_untouched()
-        folder = Path(folder)
+        if not str(folder):
+            raise ConfigError("name a folder to save to")
+        folder = Path(folder).expanduser()
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -254,8 +275,7 @@ class Playground:
             raise ConfigError(
                 "a task is told by true keypoints, and of real cloth nobody knows them; play in simulation"
             )
-        keypoints = self._rollout.start.state.keypoint_pixels()
-        return as_task(self.garment, keypoints, self.steps, self._said(), name)
+        return as_task(self.garment, self._rollout.start.state.keypoint_pixels(), self._moves(), name)
 
     def code(self) -> str:
         """What was done as Python that does it again."""
@@ -264,8 +284,10 @@ class Playground:
         return as_code(self.garment, self.seed, self.experiment, [turn.move for turn in self.turns])
 
     def close(self) -> None:
-        """Release the simulator; nothing can be folded afterwards."""
-        self._simulator.close()
+        """Release the simulator; nothing can be folded afterwards, but what was done stays."""
+        if self._closed is None:
+            self._closed = self._rollout.episode(self.seed, self.seed)
+            self._simulator.close()
 
     def __enter__(self) -> Playground:
         return self
@@ -275,8 +297,26 @@ class Playground:
     ) -> None:
         self.close()
 
-    def _said(self) -> list[str]:
-        return [turn.move for turn in self.turns if isinstance(turn.move, str)]
+    def _moves(self) -> list[tuple[str | None, Sequence[Step]]]:
+        """Each sentence, or None for a move by hand, with its folds."""
+        return [(turn.move if isinstance(turn.move, str) else None, turn.steps) for turn in self.turns]
+
+    def _in_words(self) -> str:
+        """What was done: sentences as they were said, moves by hand by the keypoints."""
+        from polyfold.playground._tasks import told
+
+        said = [sentence or "a fold by hand" for sentence, _ in self._moves()]
+        start = self._rollout.start.state
+        if not start.known:
+            return "; then ".join(said)
+        try:
+            return told(self.garment, start.keypoint_pixels(), self._moves())[1]
+        except (ConfigError, GroundingError):
+            return "; then ".join(said)
+
+    def _refuse_if_closed(self) -> None:
+        if self._closed is not None:
+            raise ConfigError("this playground is closed; begin anew with polyfold.play(...)")
 
     def _refuse_if_untouched(self) -> None:
         if not self.turns:
@@ -302,3 +342,10 @@ class Playground:
     def __repr__(self) -> str:
         folds = "1 fold" if len(self.steps) == 1 else f"{len(self.steps)} folds"
         return f"<Playground: {self.garment.name}, {folds}>"
+
+
+def _refuse_what_is_no_move(move: object, kinds: Any) -> None:
+    if not isinstance(move, kinds):
+        raise ConfigError(f"{move!r} is no move; give a polyfold.FoldLine, a polyfold.Action, or to fold a sentence")
+    if isinstance(move, FoldLine) and not np.isfinite([move.start, move.end]).all():
+        raise ConfigError("a fold line goes from one finite pixel to another; one is NaN or infinite")

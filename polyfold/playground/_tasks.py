@@ -22,38 +22,57 @@ from polyfold.types import Step
 Floats = NDArray[np.float64]
 Points = Mapping[str, Floats]
 
+SURE = 0.3
+"""Points of a line that are at least this share of the span apart tell its direction."""
+
 NEAR = 0.025
 """A point that comes to lie this near another, as a share of the garment's span, was meant to."""
 
 
-def as_task(garment: Garment, keypoints: Points, steps: Sequence[Step], sentences: Sequence[str], name: str) -> str:
+def as_task(garment: Garment, keypoints: Points, moves: Sequence[tuple[str | None, Sequence[Step]]], name: str) -> str:
     """A suite of one task, in TOML.
 
     Args:
         garment: what was folded.
         keypoints: keypoint name -> pixel of the flat garment, shape (2,).
-        steps: the folds; one that repeats the one before is left out.
-        sentences: what was said; without any, the folds are told in words.
+        moves: each sentence, or None for a move by hand, with the folds that it made.
         name: the task's id.
 
     Raises:
-        ConfigError: if the name serves no task, or a fold has no line.
+        ConfigError: if the name serves no task, a fold has no line, or none took hold of the cloth.
     """
     import tomli_w
 
-    task = None
-    for step in steps:
-        if step.fold_line is None:
-            raise ConfigError(f"fold {step.index + 1} has no line that a task could tell; undo it")
-        if not step.retry:
-            task = _with(task, garment, keypoints, step.fold_line, name)
-    assert task is not None
-    said = ["; then ".join(sentences)] if sentences else [", then ".join(describe(fold) for fold in task.steps)]
-    told = task.model_copy(update={"instructions": tuple(said)}).model_dump(mode="json", exclude_none=True)
-    told["steps"] = [_short(step) for step in told["steps"]]
-    suite = {"schema_version": 1, "name": name, "unseen_wordings": [], "task": [told]}
+    task, said = told(garment, keypoints, moves, name)
+    if task is None:
+        raise ConfigError("no fold took hold of the cloth, so there is no task; fold something first")
+    asked = task.model_copy(update={"instructions": (said,)}).model_dump(mode="json", exclude_none=True)
+    asked["steps"] = [_short(step) for step in asked["steps"]]
+    suite = {"schema_version": 1, "name": name, "unseen_wordings": [], "task": [asked]}
     Suite.model_validate(suite)
     return tomli_w.dumps(suite)
+
+
+def told(
+    garment: Garment, keypoints: Points, moves: Sequence[tuple[str | None, Sequence[Step]]], name: str = "by-hand"
+) -> tuple[Task | None, str]:
+    """The moves as a task, None if none took hold of the cloth, and all of them in words."""
+    task, words = None, []
+    for sentence, steps in moves:
+        for step in steps:
+            if step.retry or not _took_hold(step):
+                continue
+            if step.fold_line is None:
+                raise ConfigError(f"fold {step.index + 1} has no line that a task could tell; undo it")
+            task = _with(task, garment, keypoints, step.fold_line, name)
+            words += [] if sentence else [describe(task.steps[-1])]
+        words += [sentence] if sentence else []
+    return task, "; then ".join(words)
+
+
+def _took_hold(step: Step) -> bool:
+    """Whether any arm held cloth, as far as the simulator says."""
+    return step.after.grasped is None or max(step.after.grasped, default=0) > 0
 
 
 def _with(task: Task | None, garment: Garment, keypoints: Points, line: FoldLine, name: str) -> Task:
@@ -83,7 +102,7 @@ def fold_along(line: FoldLine, at: Points, garment: Garment) -> Fold:
     if pairs and len(pairs) == len(lifted):
         return Fold.model_validate({"pairs": pairs})
     lift = max(lifted, key=lambda name: float(line.distance(at[name])), default=None)
-    crease = _crossings(line, at, _around(garment))
+    crease = _crossings(line, at, _around(garment), SURE * span)
     if lift is None or crease is None:
         crease = tuple(_weights(point, at) for point in (line.start, line.end))
         lift = lift or _weights(line.shifted(0.1 * span).start, at)
@@ -104,21 +123,26 @@ def _around(garment: Garment) -> list[str]:
     return sorted(garment.keypoints, key=lambda name: place.get(garment.keypoints[name], 0))
 
 
-def _crossings(line: FoldLine, at: Points, order: Sequence[str]) -> tuple[dict[str, float], dict[str, float]] | None:
-    """The outermost points where a line crosses the polygon, as shares of the two keypoints beside each."""
+def _crossings(
+    line: FoldLine, at: Points, order: Sequence[str], least: float
+) -> tuple[dict[str, float], dict[str, float]] | None:
+    """The outermost points where a line crosses the polygon, as shares of the two keypoints beside each.
+
+    None where they are nearer than ``least`` [px]: too near to tell the line.
+    """
     along = np.subtract(line.end, line.start) / line.length
     found: list[tuple[float, dict[str, float]]] = []
     for one, other in pairwise([*order, order[0]]):
         here, there = float(line.distance(at[one])), float(line.distance(at[other]))
         if (here > 0) == (there > 0):
             continue
-        share = round(here / (here - there), 3)
+        share = round(here / (here - there), 4)
         point = (1 - share) * at[one] + share * at[other]
-        weights = {one: round(1 - share, 3), other: share}
+        weights = {one: round(1 - share, 4), other: share}
         found.append((float((point - line.start) @ along), {name: w for name, w in weights.items() if w}))
-    if len(found) < 2:
-        return None
     found.sort(key=lambda crossing: crossing[0])
+    if len(found) < 2 or found[-1][0] - found[0][0] < least:
+        return None
     return found[0][1], found[-1][1]
 
 

@@ -88,14 +88,22 @@ class PlaygroundWidget(anywidget.AnyWidget):
             "save": self._save,
         }
         try:
+            if str(content["do"]) in ("task", "code", "save"):
+                self.status = ""
             actions[str(content["do"])](content)
         except PolyfoldError as error:
             self.status = str(error)
-        self.show()
-        self.send({"do": "answered"})
+        except (KeyError, TypeError, ValueError, IndexError) as error:
+            self.status = (
+                f"the page sent what can't be read ({type(error).__name__}: {error}); show the playground again"
+            )
+        finally:
+            self.show()
+            self.send({"do": "answered"})
 
     def _drew_line(self, told: Mapping[str, Any]) -> None:
-        line = FoldLine.between(*np.round([told["start"], told["end"]], 1))
+        width, height = self.size
+        line = FoldLine.between(*np.clip(np.round([told["start"], told["end"]], 1), 0, [width - 1, height - 1]))
         if line.length < 1.0:
             self.status = "that was a click; drag from where the fold line begins to where it ends"
             return
@@ -114,6 +122,8 @@ class PlaygroundWidget(anywidget.AnyWidget):
     def _flip(self, _: Mapping[str, Any]) -> None:
         if isinstance(self._move, FoldLine):
             self._think_of(self._move.reversed())
+        else:
+            self.status = "only a fold line has another side"
 
     def _clear(self, _: Mapping[str, Any]) -> None:
         self._plan, self._move, self.status, self.text = None, None, HINT, ""

@@ -94,18 +94,23 @@ function render({ model, el }) {
     draw();
   });
   canvas.addEventListener("keydown", (event) => {
-    if (event.key === "Enter") send("fold");
-    else if (event.key === "Escape") clear();
-    else if (event.key === "z" && (event.ctrlKey || event.metaKey)) send("undo");
-    else return;
+    const undone = event.key === "z" && (event.ctrlKey || event.metaKey);
+    if (!["Enter", "Escape"].includes(event.key) && !undone) return;
+    if (!model.get("busy")) {
+      if (event.key === "Enter") doing("fold");
+      else if (undone) doing("undo");
+      else clear();
+    }
     event.preventDefault();
     event.stopPropagation(); // JupyterLab has uses for these keys as well
   });
 
-  function clear() {
-    arrows = [];
-    send("clear");
+  function doing(what, more = {}) {
+    arrows = []; // what was drawn is done with
+    send(what, more);
   }
+
+  const clear = () => doing("clear");
 
   // The panel -------------------------------------------------------------------------------------------------------
 
@@ -114,20 +119,20 @@ function render({ model, el }) {
     element("option", { value: "picks" }, "picks and places"));
   const mode = () => choose.value;
   const button = (label, title, pressed) => element("button", { type: "button", title, onclick: pressed }, label);
-  const fold = button("Fold", "do what is drawn (Enter)", () => { arrows = []; send("fold"); });
+  const fold = button("Fold", "do what is drawn (Enter)", () => doing("fold"));
   fold.classList.add("polyfold-main");
   const flip = button("Flip", "lift the other side of the line", () => send("flip"));
   const wipe = button("Clear", "forget what is drawn (Escape)", clear);
-  const undo = button("Undo", "take back the last fold (Ctrl+Z)", () => { arrows = []; send("undo"); });
+  const undo = button("Undo", "take back the last fold (Ctrl+Z)", () => doing("undo"));
   const sentence = element("input", {
     type: "text", placeholder: "or say it: fold it in half", "aria-label": "a sentence",
     onkeydown: (event) => {
       event.stopPropagation();
-      if (event.key === "Enter" && sentence.value.trim()) send("say", { sentence: sentence.value });
+      if (event.key === "Enter" && sentence.value.trim()) doing("say", { sentence: sentence.value });
     },
   });
   const say = button("Go", "fold as the sentence says", () => {
-    if (sentence.value.trim()) send("say", { sentence: sentence.value });
+    if (sentence.value.trim()) doing("say", { sentence: sentence.value });
   });
   const tick = (name, label) => {
     const box = element("input", { type: "checkbox", onchange: () => { model.set(name, box.checked); model.save_changes(); } });

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from polyfold import plugins
 from polyfold.errors import (
@@ -35,6 +36,14 @@ STAGES: Sequence[tuple[type[PolyfoldError], str]] = (
     (RobotError, "execution"),
 )
 """Errors that end an episode, and the stage of its failure; the first that fits counts."""
+
+
+class Mark(NamedTuple):
+    """How far an episode has come: numbers of folds, subgoals and requests."""
+
+    steps: int
+    subgoals: int
+    calls: int
 
 
 class Rollout:
@@ -112,12 +121,18 @@ class Rollout:
         plugins.notify("on_step", step=step, role=self._role)
         return step
 
-    def take_back(self) -> None:
-        """Undo the last fold: the cloth lies as before it."""
-        last = self.steps.pop()
-        state = self.steps[-1].after if self.steps else self.start.state
-        self.start.simulator.restore(state)
-        self.seen = last.observation
+    def mark(self) -> Mark:
+        """How far it has come, for :meth:`go_back`."""
+        return Mark(len(self.steps), len(self.subgoals), len(self.start.transcript.calls))
+
+    def go_back(self, mark: Mark) -> None:
+        """Undo everything since a mark: the cloth lies as then, and nothing that was said since is told."""
+        undone = self.steps[mark.steps :]
+        del self.steps[mark.steps :], self.start.transcript.calls[mark.calls :]
+        self.subgoals = self.subgoals[: mark.subgoals]
+        self.start.simulator.restore(self.steps[-1].after if self.steps else self.start.state)
+        if undone:
+            self.seen = undone[0].observation
 
     def _spend(self, stage: str, seconds: float) -> None:
         self.seconds[stage] = self.seconds.get(stage, 0.0) + seconds

@@ -108,3 +108,20 @@ def test_tables_in_notebooks_keep_figures_on_one_line_and_sort_by_value(results)
     values = [float(part.split('"')[1]) for part in html.split("data-value=")[1:]]
     assert any(not math.isclose(value, round(value)) for value in values)
     assert "onclick" not in polyfold.table(results).html()  # reports forbid scripts of their own
+
+
+def test_grids_whose_variants_cannot_be_told_apart_are_refused():
+    base = Study(**SMALL)
+    found = polyfold.ablate(base, "policy", [{"name": "affordance-pair", "gamma": gamma} for gamma in (0.1, 0.2)])
+    assert list(found.variants) == ["affordance-pair gamma=0.1", "affordance-pair gamma=0.2"]
+    for settings in ({"policy": "farthest"}, {}, {"policy": []}, {"policy": ["caso", "caso"]}):
+        with pytest.raises(ConfigError):
+            polyfold.grid(base, settings)
+
+
+def test_what_does_not_differ_has_no_interval(results):
+    same = [record.model_copy(update={"metrics": {**record.metrics, "miou": 0.5}}) for record in results.records]
+    cells = Results(results.run, same).effects("miou").cells
+    assert not any(cell.has_interval for _, cell in cells)
+    with pytest.raises(ConfigError, match="both down and across"):
+        results.pivot("policy", "policy")

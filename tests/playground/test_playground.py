@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import tomllib
 
 import numpy as np
 import pytest
@@ -64,7 +65,8 @@ def test_a_sentence_goes_on_from_what_was_folded_by_hand(playground):
     folded = steps[0].scene.model
     assert len(folded.folds) == 1  # the grounding knows of the corner that was folded by hand
     said = playground.episode
-    assert said.instruction == "fold the top right corner inward to the centre"
+    assert said.instruction.startswith("fold bottom left over along the line")
+    assert said.instruction.endswith("; then fold the top right corner inward to the centre")
     assert len(said.steps) == 1 + len(steps)
     assert said.fidelity is not None
 
@@ -108,6 +110,56 @@ def test_an_interrupted_fold_leaves_the_cloth_as_before_it(playground):
     assert playground._simulator.state().positions == pytest.approx(before, abs=0)
 
 
+def test_a_sentence_that_is_broken_off_leaves_its_whole_folds_each_a_move_of_its_own(playground):
+    seen = []
+
+    def interrupt(_):
+        seen.append(len(playground.steps))
+        if seen[-1] == 1:
+            raise KeyboardInterrupt
+
+    with playground.watched(interrupt), pytest.raises(KeyboardInterrupt):
+        playground.fold("fold it in half, then fold it in half again")
+    assert [type(turn.move) for turn in playground.turns] == [polyfold.Action]
+    assert "polyfold.Action(" in playground.code()
+    assert {moment.fold for moment in playground._moments} == {0}
+    playground.undo()
+    done = playground.episode
+    assert (done.steps, done.subgoals, done.calls) == ((), (), ())
+
+
+def test_what_was_taken_back_is_told_no_more(playground):
+    playground.fold(ACROSS)
+    playground.fold("fold it in half")
+    playground.undo()
+    done = playground.episode
+    assert (len(done.steps), done.subgoals, done.calls) == (1, (), ())
+    assert "in half" not in done.instruction
+
+
+def test_what_was_done_is_there_after_it_was_closed(playground):
+    playground.fold(ACROSS)
+    playground.close()
+    assert len(playground.episode.steps) == 1
+    for move in (playground.undo, lambda: playground.fold(ACROSS)):
+        with pytest.raises(ConfigError, match="closed; begin anew"):
+            move()
+    assert len(playground.turns) == 1
+
+
+@pytest.mark.parametrize("move", [None, 3, ((1, 2), (3, 4)), polyfold.FoldLine((0.0, float("nan")), (1.0, 2.0))])
+def test_what_is_no_move_is_refused(playground, move):
+    with pytest.raises(ConfigError, match=r"no move|finite pixel"):
+        playground.fold(move)
+
+
+def test_a_garment_is_made_of_the_fabric_that_is_asked_for():
+    with polyfold.play(square(), fabric="denim") as playground:
+        assert playground.garment.fabric.name == "denim"
+    with pytest.raises(ConfigError, match="no garment"):
+        polyfold.play(None)
+
+
 def test_agents_that_need_more_than_a_sentence_are_refused():
     with pytest.raises(ConfigError, match="choose an agent that follows sentences"):
         polyfold.play(square(), agent="fold-lines")
@@ -128,7 +180,7 @@ def test_the_code_folds_the_same_again(tmp_path):
 def test_code_names_the_components_and_says_where_a_seed_does_not_make_the_garment():
     with polyfold.play(square(2), 2, policy="farthest", fabric={"name": "denim"}) as playground:
         code = playground.code()
-    assert "# `garment` is the one that was played with: square-0002" in code
+    assert "# the one that was played with, square-0002" in code
     assert "polyfold.play(garment, seed=2, fabric='denim', policy='farthest')" in code
 
 
@@ -150,6 +202,48 @@ def test_what_was_done_becomes_a_task_for_others_of_its_kind(playground, tmp_pat
         np.testing.assert_array_equal(told.lifts([corner, other]), planned.lifts([corner, other]))
     with polyfold.play(square(7), 7) as another:
         fold_lines(task, another.state.keypoint_pixels())
+
+
+def test_lines_over_plies_are_told_as_they_were_drawn():
+    from polyfold.playground._tasks import fold_along
+    from polyfold.tasks._lines import points_after
+    from polyfold.tasks._suite import Task
+
+    shirt, rng = polyfold.garment("tshirt", 0, edge_length=0.03), np.random.default_rng(3)
+    with polyfold.play(shirt) as playground:
+        at = playground.state.keypoint_pixels()
+    worst = 0.0
+    for _ in range(150):
+        task = None
+        for _ in range(2):
+            middle, angle = 200 + rng.uniform(-50, 50, 2), rng.uniform(0, 2 * np.pi)
+            way = 120 * np.array([np.cos(angle), np.sin(angle)])
+            line = polyfold.FoldLine.between(middle - way, middle + way)
+            steps = (*(task.steps if task else ()), fold_along(line, points_after(task, at), shirt))
+            task = Task(id="mine", garment="tshirt", type="custom", steps=steps)
+            told = fold_lines(task, at)[-1]
+            worst = max(worst, *(abs(float(told.distance(point))) for point in (line.start, line.end)))
+    assert worst < 14.0  # what was meant for a keypoint is told by it
+
+
+def test_folds_that_took_nothing_are_no_steps_and_every_move_is_in_the_words(playground):
+    playground.fold("fold it in half")
+    playground.fold(polyfold.Action([[5.0, 5.0]], [[50.0, 50.0]]))
+    playground.fold(polyfold.FoldLine((200.0, 120.0), (200.0, 280.0)))
+    told = tomllib.loads(playground.task("mine"))["task"][0]
+    assert len(told["steps"]) == 2
+    assert told["instructions"][0].startswith("fold it in half; then fold ")
+
+
+def test_a_task_can_be_run_as_a_study_by_its_file(playground, tmp_path):
+    playground.fold("fold it in half")
+    file = tmp_path / "mine.toml"
+    file.write_text(playground.task("mine"), encoding="utf-8")
+    study = polyfold.Study(name="mine", suite=str(file), edge_length=0.04)
+    assert str(study).startswith("study mine: 1 episode\n")
+    (record,) = polyfold.run(study, tmp_path / "run", progress=False).records
+    assert record.task == "mine"
+    assert record.succeeded
 
 
 def test_a_name_that_serves_no_task_is_refused(playground):

@@ -88,3 +88,14 @@ def test_the_cloth_is_shown_while_it_moves(table):
     frames = [buffers for what, buffers in sent if what == "frame"]
     assert len(frames) > 3
     assert all(picture.startswith(b"\x89PNG") for (picture,) in frames)
+
+
+def test_what_cannot_be_read_is_answered_all_the_same(table):
+    playground, send = table
+    sent = []
+    playground.widget.send = lambda content, buffers=None: sent.append(content["do"])
+    for what, more in (("line", {}), ("nothing", {}), ("picks", {"arrows": []}), ("line", {"start": "x", "end": 2})):
+        assert "can't be" in send(what, **more).status
+    assert sent == ["answered"] * 4
+    send("line", start=[-1e9, 200], end=[1e9, 200])
+    assert playground.widget.planned
