@@ -174,5 +174,5 @@ def register() -> None:
         if isinstance(entry, Task) and name not in gymnasium.registry:
             gymnasium.register(
                 name, entry_point="polyfold_interchange.environment:FoldingEnv", kwargs={"task": entry.id},
-                order_enforce=True,
+                order_enforce=False,  # it refuses by itself, and a wrapper would hide task_description (gymnasium 1.4)
             )  # fmt: skip
