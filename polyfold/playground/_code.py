@@ -12,9 +12,7 @@ from polyfold import plugins
 from polyfold.config import Experiment
 from polyfold.garments import Garment
 from polyfold.geometry import FoldLine
-from polyfold.types import Action
-
-Move = str | FoldLine | Action
+from polyfold.playground._moves import Move
 
 
 def as_code(garment: Garment, seed: int, experiment: Experiment, moves: Iterable[Move]) -> str:

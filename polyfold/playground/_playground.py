@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -20,6 +20,7 @@ from polyfold.errors import ConfigError, GroundingError
 from polyfold.evaluation import judge
 from polyfold.garments import Garment
 from polyfold.geometry import FoldLine, contour_of
+from polyfold.playground._moves import Move, Turn, refuse_what_is_no_move
 from polyfold.plugins._fabrics import garment_template
 from polyfold.plugins.interfaces import RecordsMotion, action_map_later
 from polyfold.rollout._inputs import Start
@@ -30,24 +31,6 @@ from polyfold.rollout._transcript import Transcript
 from polyfold.types import Action, Decision, Episode, Observation, Scene, SimState, Step
 from polyfold.types._views import view_of
 from polyfold.viz._film import Moment
-
-Move = str | FoldLine | Action
-"""What one can ask for: a sentence, a fold line, or picks and places."""
-
-
-@dataclass(frozen=True, eq=False)
-class Turn:
-    """What was asked for at once, and the folds that came of it."""
-
-    move: Move
-    steps: tuple[Step, ...]
-    before: Mark
-
-    def in_words(self) -> str:
-        """What was asked for, and what came of it."""
-        asked = f"“{self.move}”" if isinstance(self.move, str) else "a fold line"
-        asked = "picks and places" if isinstance(self.move, Action) else asked
-        return f"{asked}: {'; '.join(step.in_words() for step in self.steps)}"
 
 
 def play(
@@ -169,7 +152,7 @@ class Playground:
             GroundingError: if no cloth is in sight.
         """
         self._refuse_if_closed()
-        _refuse_what_is_no_move(move, FoldLine | Action)
+        refuse_what_is_no_move(move, FoldLine | Action)
         scene = self.scene
         if isinstance(move, Action):
             move.check_inside(self.observation.camera)
@@ -196,7 +179,7 @@ class Playground:
             PolyfoldError: as of :meth:`propose`, or if planning or the simulation fail; folds made until then stay.
         """
         self._refuse_if_closed()
-        _refuse_what_is_no_move(move, str | FoldLine | Action)
+        refuse_what_is_no_move(move, str | FoldLine | Action)
         before = self._rollout.mark()
         try:
             if isinstance(move, str):
@@ -342,10 +325,3 @@ class Playground:
     def __repr__(self) -> str:
         folds = "1 fold" if len(self.steps) == 1 else f"{len(self.steps)} folds"
         return f"<Playground: {self.garment.name}, {folds}>"
-
-
-def _refuse_what_is_no_move(move: object, kinds: Any) -> None:
-    if not isinstance(move, kinds):
-        raise ConfigError(f"{move!r} is no move; give a polyfold.FoldLine, a polyfold.Action, or to fold a sentence")
-    if isinstance(move, FoldLine) and not np.isfinite([move.start, move.end]).all():
-        raise ConfigError("a fold line goes from one finite pixel to another; one is NaN or infinite")

@@ -12,8 +12,9 @@ import traitlets
 
 from polyfold.errors import PolyfoldError
 from polyfold.geometry import FoldLine
+from polyfold.playground._moves import Move
 from polyfold.playground._picture import lying, planned
-from polyfold.playground._playground import Move, Playground
+from polyfold.playground._playground import Playground
 from polyfold.types import Action, Decision, Observation
 from polyfold.viz import png
 from polyfold.viz._draw._style import ARMS, FOLD_LINE, css
