@@ -5,7 +5,10 @@ import sys
 
 import pytest
 
-HEAVY = ("torch", "numba", "pybullet", "litellm", "cv2", "matplotlib", "scipy", "shapely", "jupyterlab", "trimesh")
+HEAVY = (
+    "torch", "numba", "pybullet", "litellm", "cv2", "matplotlib", "scipy", "shapely", "jupyterlab", "trimesh", "pandas",
+    "gymnasium", "pyarrow", "av", "anywidget", "cloudpickle",
+)  # fmt: skip
 
 
 @pytest.mark.parametrize(
