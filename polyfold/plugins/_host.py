@@ -156,7 +156,8 @@ class Host:
         found = self.catalog()
         known = sorted(found.components[kind])
         hint = self._which_garment(name, known) if kind == "garments" else did_you_mean(name, known)
-        message = f"no {singular(kind)} is called {name!r}; {hint}"
+        what = "task suite" if kind == "tasks" else singular(kind)
+        message = f"no {what} is called {name!r}; {hint}"
         troubled = [plugin for plugin in found.plugins if plugin.problems]
         if troubled:
             listed = "; ".join(f"{plugin.label}: {plugin.problems[0].summary}" for plugin in troubled)
