@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polyfold.errors import ConfigError, did_you_mean
+from polyfold.errors import ConfigError
 
 if TYPE_CHECKING:
     from polyfold_interchange.lerobot import Recording
@@ -29,7 +29,12 @@ class Export:
             "--out", type=Path, required=True, metavar="DIR", help="data set; goes on if it was stopped"
         )
         parser.add_argument("--suite", default="polyfold70", metavar="NAME", help="task suite (default: polyfold70)")
-        parser.add_argument("--split", choices=("seen", "unseen"), default="seen", help="of the tasks (default: seen)")
+        parser.add_argument(
+            "--split",
+            choices=("seen", "unseen"),
+            default="seen",
+            help="of the tasks, unless --tasks names them (default: seen)",
+        )
         parser.add_argument("--tasks", nargs="+", default=(), metavar="ID", help="only these tasks")
         parser.add_argument("--agent", default="fold-lines", metavar="NAME", help="who folds (default: fold-lines)")
         parser.add_argument("--garments", type="count", default=5, metavar="N", help="for each task (default: 5)")
@@ -99,7 +104,7 @@ def recorded(suite_name: str, agent: str, edge_length: float, failed_too: bool, 
     from polyfold_interchange.lerobot import Recording
 
     name, seed = job
-    task: Any = suite(suite_name).entry(name)
+    task = suite(suite_name).task(name)
     garment = plugins.generate_garment(task.garment, seed, edge_length)
     sentence = task.instructions[seed % len(task.instructions)] if task.instructions else task.id
     episode = run_episode(Experiment.of(agent=agent), garment, sentence, seed, task=task)
@@ -110,14 +115,10 @@ def recorded(suite_name: str, agent: str, edge_length: float, failed_too: bool, 
 
 def _jobs(suite_name: str, split: str, tasks: Sequence[str], first_seed: int, garments: int) -> list[Job]:
     from polyfold.evaluation import suite
-    from polyfold.tasks import Task
 
-    known = {entry.id: entry for entry in suite(suite_name).entries if isinstance(entry, Task)}
-    for name in tasks:
-        if name not in known:
-            raise ConfigError(f"no task of {suite_name} is called {name!r}; {did_you_mean(name, known)}")
-    chosen = [name for name, task in known.items() if (name in tasks if tasks else task.split in (split, None))]
-    return [(name, seed) for seed in range(first_seed, first_seed + garments) for name in chosen]
+    found = suite(suite_name)
+    chosen = [found.task(name) for name in tasks] or [task for task in found.tasks if task.split in (split, None)]
+    return [(task.id, seed) for seed in range(first_seed, first_seed + garments) for task in chosen]
 
 
 def _part(parts: Path, job: Job) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import gymnasium
@@ -10,10 +11,9 @@ from numpy.typing import NDArray
 
 from polyfold import plugins
 from polyfold.config import Experiment
-from polyfold.errors import ActionError, ConfigError, SimulationError, did_you_mean
+from polyfold.errors import ActionError, ConfigError, SimulationError
 from polyfold.evaluation import judge, suite
-from polyfold.tasks import Task
-from polyfold.types import Decision, Episode, Observation, SimState, Step
+from polyfold.types import Episode, Observation, Step
 from polyfold_interchange.numbers import as_action, state_after
 
 SPARE = 2
@@ -57,7 +57,7 @@ class FoldingEnv(gymnasium.Env):
     ) -> None:
         if seeds[0] > seeds[1]:
             raise ConfigError(f"seeds are the first and the last garment, not {seeds}; give them in order")
-        self._task = _task(task, suite_name)
+        self._task = suite(suite_name).task(task)
         self._seeds, self._edge_length = seeds, edge_length
         self._most = len(self._task.steps) + SPARE if max_folds is None else max_folds
         self._experiment = experiment or Experiment()
@@ -141,14 +141,12 @@ class FoldingEnv(gymnasium.Env):
         return self._seen
 
     def _fold(self, numbers: NDArray[np.float32]) -> None:
-        decision = Decision(as_action(numbers, self._seen.camera))
-        before = self._seen
-        self._seen = self._simulator.execute(decision.action)
-        self._steps.append(_step(len(self._steps), decision, before, self._simulator.state()))
+        action, before = as_action(numbers, self._seen.camera), self._seen
+        self._seen = self._simulator.execute(action)
+        after = self._simulator.state()
+        self._steps.append(Step(len(self._steps), None, None, None, action, before, seconds={}, after=after))
 
     def _episode(self) -> Episode:
-        from dataclasses import replace
-
         assert self._begun is not None
         return replace(self._begun, steps=tuple(self._steps), final=self._seen, final_state=self._simulator.state())
 
@@ -156,23 +154,12 @@ class FoldingEnv(gymnasium.Env):
         return {"pixels": self._seen.rgb.copy(), "agent_pos": state_after(self._numbers)}
 
 
-def _task(name: str, suite_name: str) -> Task:
-    tasks = {entry.id: entry for entry in suite(suite_name).entries if isinstance(entry, Task)}
-    if name not in tasks:
-        raise ConfigError(f"no task of {suite_name} is called {name!r}; {did_you_mean(name, tasks)}")
-    return tasks[name]
-
-
-def _step(index: int, decision: Decision, seen: Observation, after: SimState) -> Step:
-    return Step(index, None, None, None, decision.action, seen, {}, after)
-
-
 def register() -> None:
     """Make the environment known to Gymnasium as ``polyfold/TASK``, for every task of the paper's suite."""
-    for entry in suite("polyfold70").entries:
-        name = f"polyfold/{entry.id}"
-        if isinstance(entry, Task) and name not in gymnasium.registry:
+    for task in suite("polyfold70").tasks:
+        name = f"polyfold/{task.id}"
+        if name not in gymnasium.registry:
             gymnasium.register(
-                name, entry_point="polyfold_interchange.environment:FoldingEnv", kwargs={"task": entry.id},
+                name, entry_point="polyfold_interchange.environment:FoldingEnv", kwargs={"task": task.id},
                 order_enforce=False,  # it refuses by itself, and a wrapper would hide task_description (gymnasium 1.4)
             )  # fmt: skip

@@ -61,12 +61,9 @@ def fold(
     """
     instruction = plain(instruction)  # before a folder is made for what is no text
     experiment = (experiment or Experiment()).override(components)
-    if isinstance(garment, str):
-        garment = named_garment(garment, seed=seed, experiment=experiment)
-    elif experiment.fabric != ComponentSpec(name=USUAL):
-        garment = replace(garment, fabric=plugins.make_fabric(experiment.fabric, garment.kind))
+    garment = garment_for(experiment, garment, seed)
     recorded = None if out is None else _Film()
-    folder = None if out is None else _prepare(Path(out))
+    folder = None if out is None else folder_for(Path(out))
     if observer is not None:
         plugins.observe(observer)
     started = datetime.now(UTC)
@@ -149,7 +146,19 @@ def save(episode: Episode, folder: Path, moments: Sequence[Moment] = (), started
         write_film(episode, moments, folder / "fold.gif", GIF_RATE)
 
 
-def _prepare(folder: Path) -> Path:
+def garment_for(experiment: Experiment, garment: str | Garment, seed: int) -> Garment:
+    """A kind's seeded garment, or the one that is given, of the fabric that the experiment names if it names one."""
+    if isinstance(garment, str):
+        return named_garment(garment, seed=seed, experiment=experiment)
+    if not isinstance(garment, Garment):
+        raise ConfigError(f"{garment!r} is no garment; give a kind, such as 'tshirt', or one of polyfold.garment(...)")
+    if experiment.fabric == ComponentSpec(name=USUAL):
+        return garment
+    return replace(garment, fabric=plugins.make_fabric(experiment.fabric, garment.kind))
+
+
+def folder_for(folder: Path) -> Path:
+    """The folder, made if needed. Raises ConfigError if it can't be written to."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

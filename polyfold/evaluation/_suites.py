@@ -9,6 +9,7 @@ from polyfold import plugins
 from polyfold.errors import ConfigError, PluginError, did_you_mean
 from polyfold.plugins._fabrics import garment_template
 from polyfold.tasks import OpenTask, Suite, Task, load_suite
+from polyfold.tasks._suite import is_file
 
 
 def suite(name: str) -> Suite:
@@ -22,11 +23,6 @@ def suite(name: str) -> Suite:
         ConfigError: if its file is wrong.
     """
     return _checked(name, _target(name), _stamp(name))
-
-
-def is_file(name: str) -> bool:
-    """Whether a suite is named by its file."""
-    return name.endswith(".toml")
 
 
 def _target(name: str) -> str:

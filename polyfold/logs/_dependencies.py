@@ -17,6 +17,7 @@ from polyfold.plugins import hookspecs
 from polyfold.plugins._fabrics import chosen_fabric
 from polyfold.plugins._inspection import files_read, prompts_read
 from polyfold.prompts import load_prompt
+from polyfold.tasks._suite import is_file
 
 CORE = (
     "config.py",
@@ -61,7 +62,7 @@ def fingerprint(
     sources = {f"polyfold.{name.removesuffix('.py')}": digest_of(core / name) for name in CORE}
     folders = {"polyfold": core}
     for kind, spec in _once_each(specs):
-        if kind == "tasks" and spec.name.endswith(".toml"):  # a suite by its file
+        if kind == "tasks" and is_file(spec.name):
             files[spec.name] = digest_of_file(Path(spec.name))
             continue
         component = plugins.find(kind, spec.name.partition(":")[0])

@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 
 from polyfold import plugins
-from polyfold.api import garment as named_garment
-from polyfold.api._fold import GIF_RATE, save
-from polyfold.config import USUAL, ComponentSpec, Experiment
+from polyfold.api._fold import GIF_RATE, folder_for, garment_for, save
+from polyfold.config import Experiment
 from polyfold.errors import ConfigError, GroundingError
 from polyfold.evaluation import judge
 from polyfold.garments import Garment
@@ -57,13 +56,7 @@ def play(
         ConfigError: if the agent can't follow sentences alone.
     """
     experiment = (experiment or Experiment()).override(components)
-    if isinstance(garment, str):
-        garment = named_garment(garment, seed=seed, experiment=experiment)
-    elif not isinstance(garment, Garment):
-        raise ConfigError(f"{garment!r} is no garment; give a kind, such as 'tshirt', or one of polyfold.garment(...)")
-    elif experiment.fabric != ComponentSpec(name=USUAL):
-        garment = replace(garment, fabric=plugins.make_fabric(experiment.fabric, garment.kind))
-    return Playground(garment, seed, experiment)
+    return Playground(garment_for(experiment, garment, seed), seed, experiment)
 
 
 class Playground:
@@ -198,7 +191,7 @@ class Playground:
     def _keep_what_was_finished(self, before: Mark) -> None:
         """After a fold that was broken off: the cloth lies as after the last whole one, each a move of its own."""
         self._simulator.restore(self.state)
-        self._moments = [moment for moment in self._moments if moment.fold < len(self.steps)]
+        self._forget_motion()
         for step in self.steps[before.steps :]:
             mark = before._replace(steps=step.index)
             self.turns.append(Turn(step.action, (step,), mark))
@@ -216,9 +209,13 @@ class Playground:
             return False
         self._rollout.go_back(self.turns[-1].before)
         self.turns.pop()
-        self._moments = [moment for moment in self._moments if moment.fold < len(self.steps)]
+        self._forget_motion()
         self._scene = None
         return True
+
+    def _forget_motion(self) -> None:
+        """Of folds that are taken back or were broken off."""
+        self._moments = [moment for moment in self._moments if moment.fold < len(self.steps)]
 
     @property
     def episode(self) -> Episode:
@@ -235,18 +232,14 @@ class Playground:
         self._refuse_if_untouched()
         if not str(folder):
             raise ConfigError("name a folder to save to")
-        folder = Path(folder).expanduser()
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise ConfigError(f"can't write to {folder} ({error.strerror}); choose another folder") from error
+        folder = folder_for(Path(folder).expanduser())
         save(self.episode, folder, self._moments)
         return folder
 
     def task(self, name: str = "my-task") -> str:
         """What was done as a task of a suite, in TOML, on the garment's keypoints, so that it fits others of its kind.
 
-        Write it into a file and give that to ``polyfold evaluate --suite`` or name it in a plugin.
+        Write it into a file, ``mine.toml``, and name that as a study's ``suite``, or in a plugin.
 
         Raises:
             ConfigError: if nothing was done yet, the name serves no task, or the cloth is real.
@@ -294,7 +287,7 @@ class Playground:
             return "; then ".join(said)
         try:
             return told(self.garment, start.keypoint_pixels(), self._moves())[1]
-        except (ConfigError, GroundingError):
+        except ConfigError:  # a fold without a line
             return "; then ".join(said)
 
     def _refuse_if_closed(self) -> None:

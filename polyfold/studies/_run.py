@@ -15,7 +15,6 @@ from pathlib import Path
 from polyfold import plugins
 from polyfold.errors import ConfigError
 from polyfold.evaluation._criteria import criteria
-from polyfold.evaluation._suites import is_file
 from polyfold.logs import RunDirectory, StudyEpisodeRecord, exclusive
 from polyfold.logs._components import components_in_use
 from polyfold.logs._dependencies import fingerprint
@@ -28,6 +27,7 @@ from polyfold.studies._cell import PICTURES, Render, Scored, evaluate_cell
 from polyfold.studies._cells import Cell, cells
 from polyfold.studies._executors import check_dask, in_processes, on_dask
 from polyfold.studies._study import Study, experiment_of
+from polyfold.tasks._suite import is_file
 from polyfold.types import Threshold
 
 ENGINES = ("local", "dask")

@@ -34,7 +34,7 @@ class Study(BaseModel):
 
     Attributes:
         name: what results are labelled with.
-        suite: registered task suite.
+        suite: registered task suite, or the path of a suite's file, which ends in ``.toml``.
         tasks: patterns of ids of tasks and goals (``tshirt-*``); all by default.
         garments: number of garments per kind.
         first_seed: of the first garment; the others follow.

@@ -171,6 +171,11 @@ def _of_id(entries: Sequence[_Entry], entry_id: str, suite: str) -> _Entry:
     raise ConfigError(f"the suite {suite} has no task {entry_id!r}; {hint}")
 
 
+def is_file(suite: str) -> bool:
+    """Whether a suite is named by its file, not by its registered name."""
+    return suite.endswith(".toml")
+
+
 def load_suite(source: str | Path) -> Suite:
     """Read a suite from a path, or from ``"package:path/within/it.toml"`` as plugins register it.
 
