@@ -10,6 +10,7 @@ SHOWN = (
     ("polyfold.geometry._fold_line", "FoldLine"),
     ("polyfold.polygon._folded", "FoldedModel"),
     ("polyfold.polygon._template", "Template"),
+    ("polyfold.tasks._suite", "Task"),
     ("polyfold.types._decisions", "Action"),
     ("polyfold.types._perception", "Observation"),
     ("polyfold.types._perception", "Scene"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from os import PathLike
 from pathlib import Path
 from typing import Any, Literal
 
@@ -106,6 +107,8 @@ class Experiment(BaseModel):
 
 def read_toml(path: str | Path) -> dict[str, Any]:
     """The content of a TOML file. Raises ConfigError with the file and the line that is wrong."""
+    if not isinstance(path, str | PathLike):
+        raise ConfigError(f"{path!r} is no path; give that of a TOML file")
     path = Path(path)
     text = ""
     try:

@@ -69,7 +69,7 @@ def write_dataset(episodes: Iterable[Episode | Recording] | Episode | Recording,
         ConfigError: if the folder holds something, there is no episode, or pictures differ in size.
     """
     several = [episodes] if isinstance(episodes, Episode | Recording) else episodes
-    recordings = [one if isinstance(one, Recording) else Recording.of(one) for one in several]
+    recordings = [_recording(one) for one in (several if isinstance(several, Iterable) else [several])]
     folder = Path(folder)
     if folder.exists() and any(folder.iterdir()):
         raise ConfigError(f"{folder} holds something already; choose another folder")
@@ -91,6 +91,14 @@ def write_dataset(episodes: Iterable[Episode | Recording] | Episode | Recording,
         folder.rmdir()
     part.replace(folder)
     return folder
+
+
+def _recording(one: object) -> Recording:
+    if isinstance(one, Episode):
+        return Recording.of(one)
+    if not isinstance(one, Recording):
+        raise ConfigError(f"{one!r} is no episode; give what polyfold.fold returned, one or several")
+    return one
 
 
 def _sentences(recordings: Sequence[Recording]) -> list[str]:

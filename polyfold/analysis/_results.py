@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -145,10 +146,18 @@ class Results:
 
 def open_results(out: str | Path) -> Results:
     """Read a run directory, finished or not. Raises ConfigError if there is none, or none of a study."""
+    if not isinstance(out, str | PathLike):
+        raise ConfigError(f"{out!r} is no folder; give the --out of an evaluation")
     run = read_run(out)
     if "study" not in run.asked:
         raise ConfigError(f"{out} holds no study; give the --out of an evaluation")
     return Results(run, read_episodes(out))
+
+
+def check_results(results: object) -> None:
+    """Raise ConfigError, saying how to come by them, for what is no results: most often the folder that holds them."""
+    if not isinstance(results, Results):
+        raise ConfigError(f"{results!r} is no results; give what polyfold.run returned, or polyfold.open(folder)")
 
 
 def _row(record: StudyEpisodeRecord) -> dict[str, Any]:

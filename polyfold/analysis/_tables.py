@@ -66,7 +66,7 @@ class Figure:
 Cell = str | Figure
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Table:
     """A table of text and figures.
 
@@ -127,7 +127,7 @@ class Table:
     def _repr_html_(self) -> str:
         return view_of(self, "rich")
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         return self.markdown()
 
 

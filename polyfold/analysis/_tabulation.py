@@ -9,7 +9,7 @@ from polyfold.analysis._columns import Column, column_of, columns_of, shared
 from polyfold.analysis._differences import holm
 from polyfold.analysis._intervals import Estimate, mean
 from polyfold.analysis._notes import about, interval, noise_floor, remarks
-from polyfold.analysis._results import Results
+from polyfold.analysis._results import Results, check_results
 from polyfold.analysis._tables import CERTAIN, Cell, Figure, Table
 from polyfold.errors import ConfigError, did_you_mean
 from polyfold.logs import StudyEpisodeRecord
@@ -52,6 +52,7 @@ def table(
         groups: what makes a row; ``step`` gives the mean particle error after each of the episode's own folds.
         noise: a study of what differs without meaning; it becomes a footnote (``experiments/noise_floor.toml``).
     """
+    check_results(results)
     if groups == "step":
         return _by_step(results)
     if groups not in (*GROUPS, "none"):
@@ -141,6 +142,7 @@ def compare(
     Raises:
         ConfigError: if the study has no such variant, or one alone.
     """
+    check_results(results)
     variants = list(results.study.variants)
     for name in (variant, baseline):
         if name is not None and name not in variants:

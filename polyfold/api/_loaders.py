@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold import plugins
+from polyfold._brief import brief
 from polyfold.api._doubts import DOUBTFUL, confidence, doubts
 from polyfold.api._photos import framed as framed_photo
 from polyfold.api._photos import look
@@ -34,7 +35,7 @@ SPAN = 300.0
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Grounded:
     """A real garment with the polygon fitted to it.
 
@@ -57,6 +58,8 @@ class Grounded:
     doubts: tuple[str, ...] = ()
     plane: Rectified | None = None
     size: float | None = None
+
+    __repr__ = brief
 
     def _repr_png_(self) -> bytes:
         from polyfold import viz

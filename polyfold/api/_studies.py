@@ -6,6 +6,7 @@ from pathlib import Path
 
 from polyfold.analysis import Results
 from polyfold.analysis._results import open_results
+from polyfold.errors import ConfigError
 from polyfold.logs import read_run
 from polyfold.studies import Study
 from polyfold.studies._run import evaluate
@@ -47,6 +48,8 @@ def run(
             can't reach the workers.
         LLMAccessError: if a variant's language model lacks its key; before anything is folded.
     """
+    if not isinstance(study, Study):
+        raise ConfigError(f"{study!r} is no study; give a polyfold.Study, or the file by polyfold.load(path)")
     records = evaluate(study, out, workers, engine, address, progress, pictures, thumbnail, accept_change)
     return Results(read_run(out), records)
 

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 
-def did_you_mean(name: str, known: Iterable[str], otherwise: str | None = None) -> str:
+def did_you_mean(name: object, known: Iterable[str], otherwise: str | None = None) -> str:
     """Say which known names are near an unknown one, or which there are.
 
     Args:
-        name: the name that is not known.
+        name: the name that is not known; something that is no text is near none.
         known: the names that are.
         otherwise: what to say where none is near; by default all names that are known.
 
@@ -28,7 +28,7 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str | None = None) 
         A phrase for the end of a message, such as ``did you mean 'caso'?``, the nearest name first.
     """
     known = list(known)
-    near = get_close_matches(name, known, n=3, cutoff=0.6)
+    near = get_close_matches(name, known, n=3, cutoff=0.6) if isinstance(name, str) else []
     if near:
         return f"did you mean {' or '.join(map(repr, near))}?"
     if otherwise is not None:

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold._brief import brief
 from polyfold.garments._fabric import UNCHOSEN, Fabric
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Mesh:
     """A garment at rest, spread flat: one panel, or two panels that share their seam vertices.
 
@@ -31,6 +32,8 @@ class Mesh:
     seam: NDArray[np.bool_]
     boundary: NDArray[np.int32]
 
+    __repr__ = brief
+
     @property
     def layers(self) -> int:
         """1 for a cloth, 2 for a garment with a front and a back."""
@@ -49,7 +52,7 @@ class Mesh:
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Garment:
     """One garment: its mesh, its named ground-truth keypoints, its looks and its fabric.
 
@@ -75,3 +78,5 @@ class Garment:
     colours: tuple[tuple[int, int, int], tuple[int, int, int]] = ((66, 133, 180), (214, 204, 190))
     cyclic: tuple[str, ...] = ()
     fabric: Fabric = UNCHOSEN
+
+    __repr__ = brief

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from polyfold._brief import brief
 from polyfold.errors import ConfigError
 from polyfold.geometry import FoldLine
 from polyfold.rollout._rollout import Mark
@@ -16,13 +17,15 @@ Move = str | FoldLine | Action
 """What one can ask for: a sentence, a fold line, or picks and places."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Turn:
     """What was asked for at once, and the folds that came of it."""
 
     move: Move
     steps: tuple[Step, ...]
     before: Mark
+
+    __repr__ = brief
 
     def in_words(self) -> str:
         """What was asked for, and what came of it."""

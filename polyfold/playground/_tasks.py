@@ -16,7 +16,6 @@ from polyfold.geometry import FoldLine
 from polyfold.tasks import Suite, Task
 from polyfold.tasks._lines import points_after
 from polyfold.tasks._suite import Fold
-from polyfold.tasks._words import describe
 from polyfold.types import Step
 
 Floats = NDArray[np.float64]
@@ -65,7 +64,7 @@ def told(
             if step.fold_line is None:
                 raise ConfigError(f"fold {step.index + 1} has no line that a task could tell; undo it")
             task = _with(task, garment, keypoints, step.fold_line, name)
-            words += [] if sentence else [describe(task.steps[-1])]
+            words += [] if sentence else [task.steps[-1].in_words()]
         words += [sentence] if sentence else []
     return task, "; then ".join(words)
 

@@ -155,7 +155,8 @@ class Host:
     def _unknown(self, kind: str, name: str) -> str:
         found = self.catalog()
         known = sorted(found.components[kind])
-        hint = self._which_garment(name, known) if kind == "garments" else did_you_mean(name, known)
+        of_garment = kind == "garments" and isinstance(name, str)
+        hint = self._which_garment(name, known) if of_garment else did_you_mean(name, known)
         what = "task suite" if kind == "tasks" else singular(kind)
         message = f"no {what} is called {name!r}; {hint}"
         troubled = [plugin for plugin in found.plugins if plugin.problems]

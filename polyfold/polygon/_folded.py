@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from polyfold._brief import brief
 from polyfold.errors import GarmentError
 from polyfold.geometry import FoldLine, polygon_area, rotate
 from polyfold.polygon._coincidence import Pair, meetings, together
@@ -32,7 +33,7 @@ class _Place:
     layers: tuple[int, ...]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FoldedModel:
     """The parameterized polygon model of a garment after some folds; a value, like everything in a scene.
 
@@ -60,6 +61,8 @@ class FoldedModel:
     meetings: tuple[tuple[Pair, ...], ...] = ()
     numbers: tuple[int, ...] = ()
     _facets: tuple[Facet, ...] | None = field(default=None, repr=False)
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         rest = np.array(self.rest, float)

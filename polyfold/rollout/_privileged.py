@@ -15,7 +15,6 @@ from polyfold.garments import Garment
 from polyfold.geometry import FoldLine
 from polyfold.tasks import Task, fold_lines
 from polyfold.tasks._ideal import fold_step_by_step
-from polyfold.tasks._words import describe
 from polyfold.types import Observation, Outcome, SimState
 
 Image = NDArray[np.uint8]
@@ -58,7 +57,7 @@ def privileged_inputs(task: Task, garment: Garment, flat: SimState, seen: Observ
     folded = fold_step_by_step(flat, garment, lines)
     images = tuple(_drawn(ideal.mask, garment.colours[0], seen.rgb[0, 0]) for ideal in folded)
     ideals = tuple(ideal.outcome(flat, garment.mesh) for ideal in folded)
-    texts, depths = tuple(describe(fold) for fold in task.steps), tuple(ideal.depth for ideal in folded)
+    texts, depths = tuple(fold.in_words() for fold in task.steps), tuple(ideal.depth for ideal in folded)
     return PrivilegedInputs(tuple(lines), texts, images, depths, ideals)
 
 

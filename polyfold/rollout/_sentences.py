@@ -15,8 +15,11 @@ def plain(instruction: str) -> str:
     """The sentence without control characters and marks of direction, of which is warned.
 
     Raises:
-        ConfigError: if it holds half a surrogate pair, as a terminal leaves of bytes in another encoding.
+        ConfigError: if it is no text, or holds half a surrogate pair, as a terminal leaves of bytes in another
+            encoding.
     """
+    if not isinstance(instruction, str):
+        raise ConfigError(f"{instruction!r} is no sentence; say in words what to fold")
     if any("\ud800" <= character <= "\udfff" for character in instruction):
         shown = instruction.encode("utf-8", "backslashreplace").decode()
         raise ConfigError(

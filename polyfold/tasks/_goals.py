@@ -117,6 +117,13 @@ class OpenTask(BaseModel):
         """The sentence, as :class:`polyfold.tasks.Task` has its wordings."""
         return (self.text,)
 
+    def in_words(self) -> str:
+        """What counts as reaching it."""
+        ways = [f"ends as {' or '.join(self.accept)}"] if self.accept else []
+        if self.done is not None:
+            ways.append("keeps " + ", ".join(f"{name} {bound:g}" for name, bound in self.done.given().items()))
+        return ", or ".join(ways)
+
 
 @dataclass(frozen=True)
 class Measured:

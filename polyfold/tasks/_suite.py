@@ -36,6 +36,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from polyfold.errors import ConfigError, did_you_mean, validation_problem
 from polyfold.errors._hints import toml_problem
 from polyfold.tasks._goals import OpenTask
+from polyfold.tasks._words import as_table, listed, moves_in_words, sentences_in_words
 
 
 def _as_weights(value: Any) -> Any:
@@ -69,6 +70,10 @@ class Fold(BaseModel):
         if self.pairs is not None:
             return [point for pair in self.pairs for point in pair]
         return [*(self.crease or ()), self.lift or {}]
+
+    def in_words(self) -> str:
+        """What is folded onto what, by the names of the points."""
+        return moves_in_words(self.pairs, self.crease, self.lift)
 
 
 class Task(BaseModel):
@@ -158,6 +163,36 @@ class Suite(BaseModel):
     def for_garment(self, kind: str) -> tuple[Task, ...]:
         """The tasks on garments of this garment kind."""
         return tuple(task for task in self.tasks if task.garment == kind)
+
+    def only(self, kind: str) -> Suite:
+        """What of it is for garments of one garment kind. Raises ConfigError with the nearest kinds if nothing is."""
+        kinds = sorted({entry.garment for entry in self.entries})
+        if kind not in kinds:
+            raise ConfigError(f"the suite {self.name} has nothing for a {kind!r}; {did_you_mean(kind, kinds)}")
+        goals = tuple(goal for goal in self.goals if goal.garment == kind)
+        return self.model_copy(update={"tasks": self.for_garment(kind), "goals": goals})
+
+    def in_words(self) -> str:
+        """Every task with a sentence that asks for it and its folds, then the goals; several lines each."""
+        return listed(self._rows())
+
+    def _rows(self) -> list[tuple[str, str, str, list[str]]]:
+        rows = [
+            (
+                task.id,
+                ", ".join(filter(None, (task.type, task.split))),
+                sentences_in_words(task.instructions),
+                [fold.in_words() for fold in task.steps],
+            )
+            for task in self.tasks
+        ]
+        return [
+            *rows,
+            *((goal.id, goal.type, sentences_in_words(goal.instructions), [goal.in_words()]) for goal in self.goals),
+        ]
+
+    def _repr_html_(self) -> str:
+        return as_table(self._rows())
 
 
 _Entry = TypeVar("_Entry", bound="Task | OpenTask")

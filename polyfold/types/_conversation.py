@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from polyfold._brief import brief
+
 Message = Mapping[str, Any]
 """A chat message: ``{"role": "system" | "user" | "assistant", "content": str}``.
 
@@ -14,7 +16,7 @@ With pictures the content is a list of parts: ``{"type": "text", "text": str}`` 
 """
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Reply:
     """A language model's answer to one request.
 
@@ -48,8 +50,10 @@ class Reply:
     faults: Sequence[str] = ()
     origin: str = "live"
 
+    __repr__ = brief
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Call:
     """One request to a language model within an episode, and what came of it.
 
@@ -72,3 +76,5 @@ class Call:
     reply: Reply | None = None
     error: str | None = None
     rejected: str | None = None
+
+    __repr__ = brief

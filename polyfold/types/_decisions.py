@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold._brief import brief
 from polyfold.errors import ActionError
 from polyfold.geometry._camera import Camera
 from polyfold.geometry._fold_line import FoldLine
@@ -76,7 +77,7 @@ class Action:
             )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Decision:
     """What an agent wants done next, and what led to it.
 
@@ -98,3 +99,5 @@ class Decision:
     seconds: Mapping[str, float] = field(default_factory=dict)
     retry: bool = False
     action_map: Callable[[], ActionMap] | None = None
+
+    __repr__ = brief

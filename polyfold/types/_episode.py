@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold._brief import brief
 from polyfold.config import Experiment
 from polyfold.errors import (
     PolyfoldError,
@@ -27,7 +28,7 @@ Role = Literal["method", "reference"]
 """Whether an episode was asked for, or is the oracle's own that others are compared with."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EpisodeStart:
     """What observers are told when an episode begins."""
 
@@ -38,6 +39,8 @@ class EpisodeStart:
     observation: Observation
     seconds: float
 
+    __repr__ = brief
+
 
 SHORT = 0.005
 """Stops that are nearer to their places than this are not worth a word [m]."""
@@ -45,7 +48,7 @@ LOST = 0.5
 """An arm has lost the cloth if this share of what it took slipped out of its grip."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Step:
     """One executed fold.
 
@@ -70,6 +73,8 @@ class Step:
     after: SimState
     retry: bool = False
     action_map: Callable[[], ActionMap] | None = None
+
+    __repr__ = brief
 
     def in_words(self) -> str:
         """How many arms folded, and what went wrong with their grips, as far as the simulator says."""
@@ -106,7 +111,7 @@ class Failure:
     reason: str
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Episode:
     """Everything that happened, with the privileged states that scores are computed from.
 
@@ -139,6 +144,12 @@ class Episode:
     task: str | None = None
     fidelity: Fidelity | None = None
     ideal_lines: tuple[FoldLine, ...] = ()
+
+    def __repr__(self) -> str:
+        folds = "1 fold" if len(self.steps) == 1 else f"{len(self.steps)} folds"
+        outcome = f", {self.fidelity.in_words(self.task)}" if self.fidelity is not None else ""
+        stopped = f", stopped in {self.failure.stage}: {self.failure.reason}" if self.failure is not None else ""
+        return f"<Episode: {self.garment.name}, “{self.instruction}”, {folds}{outcome}{stopped}>"
 
     def final_attempts(self) -> list[Step]:
         """One step per planned fold: the last try of each."""

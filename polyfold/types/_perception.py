@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from polyfold.polygon import FoldedModel
+from polyfold._brief import brief
 from polyfold.geometry._camera import Camera
 
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Observation:
     """What an RGB-D camera gives, and all that an unprivileged agent ever sees.
 
@@ -29,8 +30,10 @@ class Observation:
     depth: NDArray[np.float32]
     camera: Camera
 
+    __repr__ = brief
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Scene:
     """What grounding made of an observation: pure data, enough to plan from and to ground the next image.
 
@@ -61,3 +64,5 @@ class Scene:
     notes: tuple[str, ...] = ()
     picture: NDArray[np.uint8] | None = None
     shown: tuple[str, ...] = ("polygon",)
+
+    __repr__ = brief

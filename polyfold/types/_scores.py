@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold._brief import brief
 from polyfold.errors import ConfigError
 from polyfold.garments import Mesh
 from polyfold.types._state import SimState
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Outcome:
     """How an episode began and ended, for metrics; privileged.
 
@@ -28,6 +29,8 @@ class Outcome:
     end: SimState
     mask: NDArray[np.bool_]
     mesh: Mesh
+
+    __repr__ = brief
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold._brief import brief
 from polyfold.geometry._camera import Camera
 
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SimState:
     """Privileged state of a simulated cloth: for metrics, oracle and training rewards, never for agents.
 
@@ -40,6 +41,8 @@ class SimState:
     grasped: tuple[int, ...] | None = None
     short: tuple[float, ...] | None = None
     slipped: tuple[float, ...] | None = None
+
+    __repr__ = brief
 
     @classmethod
     def of_real_cloth(cls, camera: Camera, grasped: tuple[int, ...] | None = None) -> SimState:

@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from polyfold.garments import Garment
 from polyfold.geometry import FoldLine
 from polyfold.polygon import FoldedModel, Template
+from polyfold.tasks import Task
 from polyfold.types import Action, Observation, Scene
 from polyfold.viz._draw._canvas import Canvas, Page
 from polyfold.viz._draw._drawing import draw_action, draw_fold_line
 from polyfold.viz._draw._overlays import overlay
 from polyfold.viz._draw._polygons import TABLE, grounding_picture, polygon_picture
 from polyfold.viz._draw._style import FAINT, INK, MAP, RULE
+from polyfold.viz._tasks import task_sheet
 
 Image = NDArray[np.uint8]
 
@@ -98,6 +100,12 @@ def _table(points: NDArray[np.float64]) -> Image:
     """A bare table that is large enough for these points [px]."""
     width, height = (max(SIDE, int(side) + 40) for side in points.max(0))
     return np.full((height, width, 3), TABLE, np.uint8)
+
+
+@picture_of.register
+def _task(task: Task) -> Image:
+    """The cloth before each fold, with its line, and the end."""
+    return task_sheet([task])
 
 
 @picture_of.register
