@@ -85,10 +85,11 @@ class XpbdSimulator:
 
     @interruptible()
     def reset(self, garment: Garment, seed: int) -> Observation:
-        """Lay the garment flat in a pose drawn from ``seed`` and return the first picture."""
+        """Lay the garment flat, as it says or in a pose drawn from ``seed``, and return the first picture."""
         from polyfold_xpbd.solver import Solver
 
-        angle = np.deg2rad(np.random.default_rng(seed).uniform(-1.0, 1.0) * self.config.rotation_deg)
+        drawn = np.random.default_rng(seed).uniform(-1.0, 1.0) * self.config.rotation_deg
+        angle = np.deg2rad(drawn if garment.angle_deg is None else garment.angle_deg)
         flat = np.asarray(garment.mesh.vertices, float)[:, :2]
         centre = (flat.min(axis=0) + flat.max(axis=0)) / 2
         radius = float(np.hypot(*(flat - centre).T).max())

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from polyfold import plugins
 from polyfold._brief import brief
 from polyfold.api._doubts import DOUBTFUL, confidence, doubts
+from polyfold.api._looks import colours_in
 from polyfold.api._photos import framed as framed_photo
 from polyfold.api._photos import look
 from polyfold.config import ComponentSpec, Experiment
@@ -21,7 +22,7 @@ from polyfold.errors import GarmentError
 from polyfold.garments import Garment, Pattern
 from polyfold.garments._obj import load_obj
 from polyfold.garments._outline_files import load_mask, load_outline, load_picture
-from polyfold.garments._twin import twin_from_outline, upright_size
+from polyfold.garments._twin import angle_of, twin_from_outline, upright_size
 from polyfold.geometry import Camera, contour_of
 from polyfold.geometry._masks import fill_polygon
 from polyfold.geometry._rectified import Rectified
@@ -91,7 +92,7 @@ def garment(
         seed: picks the instance when nothing else is given.
         mask: PNG or bool array, shape (H, W), of a real garment.
         outline: JSON file or array of pixels, shape (N, 2), of a real garment.
-        image: photo of a real garment on a table.
+        image: photo of a real garment on a table; the twin has its colour and lies as it lay.
         mesh: OBJ file; ``keypoints`` must be given too.
         keypoints: JSON file, keypoint name -> vertex index of the mesh.
         size: longest side of the garment's bounding box [m]; by default typical of the kind, or what the seed draws.
@@ -138,8 +139,12 @@ def garment(
             stacklevel=2,
         )
     ring, corners = _on_table(found.plane, found.outline, found.keypoints)
-    twin = twin_from_outline(ring, kind, corners, pattern_of(kind), size or found.size, edge_length)
-    return replace(twin, fabric=cloth)
+    pattern = pattern_of(kind)
+    twin = twin_from_outline(ring, kind, corners, pattern, size or found.size, edge_length)
+    if image is None:
+        return replace(twin, fabric=cloth)
+    colours, angle = colours_in(found.rgb, found.scene.mask), angle_of(corners, pattern)
+    return replace(twin, fabric=cloth, colours=colours, angle_deg=angle, photo=found.rgb)
 
 
 def pattern_of(kind: str) -> Pattern:

@@ -108,6 +108,7 @@ def _key(task: Task, garment: Garment, seed: int, experiment: Experiment) -> str
         "steps": task.model_dump(mode="json")["steps"],
         "mesh": hashlib.sha256(garment.mesh.vertices.tobytes() + garment.mesh.triangles.tobytes()).hexdigest(),
         "fabric": garment.fabric.constants(),
+        "angle": garment.angle_deg,
         "seed": seed,
         "experiment": experiment.model_dump(mode="json"),
         "fingerprint": fingerprint([experiment], [("garments", garment.kind)], commits=False).digest(),

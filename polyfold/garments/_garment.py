@@ -68,6 +68,9 @@ class Garment:
             lie (square, rectangle): at reset the edge nearest the image's top becomes the top. Empty otherwise.
         fabric: what it is made of. Generators need not give one: :func:`polyfold.garment` and
             :func:`polyfold.plugins.generate_garment` put the chosen one in. Poplin until then.
+        angle_deg: how far a simulator turns it when it lays it, counter-clockwise as the camera sees it; None where the
+            simulator draws that from its seed. The twin of a garment in a photograph lies as that did.
+        photo: the photograph that it is the twin of, as the twin's camera would see it, uint8, shape (H, W, 3).
     """
 
     kind: str
@@ -78,5 +81,7 @@ class Garment:
     colours: tuple[tuple[int, int, int], tuple[int, int, int]] = ((66, 133, 180), (214, 204, 190))
     cyclic: tuple[str, ...] = ()
     fabric: Fabric = UNCHOSEN
+    angle_deg: float | None = None
+    photo: NDArray[np.uint8] | None = None
 
     __repr__ = brief

@@ -81,6 +81,14 @@ def upright_size(outline: ArrayLike, keypoints: Mapping[str, ArrayLike], pattern
     return float(np.sqrt(abs(polygon_area(ring) / polygon_area(upright))))
 
 
+def angle_of(keypoints: Mapping[str, ArrayLike], pattern: Pattern) -> float:
+    """How far a garment lies turned from upright, counter-clockwise as seen [degrees], from its pixels (y down)."""
+    right, up = pattern.up(
+        dict(zip(pattern.corners, _complete(keypoints, pattern) * np.array([1.0, -1.0]), strict=True))
+    )
+    return float(np.degrees(np.arctan2(-right, up)))
+
+
 def repair_outline(outline: ArrayLike) -> Floats:
     """The outline without self-intersections, clockwise seen with y up, shape (K, 2).
 

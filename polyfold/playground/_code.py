@@ -39,7 +39,7 @@ def as_code(garment: Garment, seed: int, experiment: Experiment, moves: Iterable
 
 def _is_drawn(garment: Garment, seed: int, experiment: Experiment) -> bool:
     """Whether kind, seed and fabric are all that it takes to make the garment again."""
-    if garment.seed != seed:
+    if garment.seed != seed or garment.angle_deg is not None:
         return False
     drawn = plugins.generate_garment(garment.kind, seed, None, experiment.fabric, None)
     return drawn.fabric == garment.fabric and np.array_equal(drawn.mesh.vertices, garment.mesh.vertices)

@@ -74,7 +74,7 @@ class Simulator(Protocol):
     """
 
     def reset(self, garment: Garment, seed: int) -> Observation:
-        """Lay the garment flat in a pose drawn from ``seed`` and return the first picture."""
+        """Lay the garment flat, at its own ``angle_deg`` or in a pose drawn from ``seed``; return the first picture."""
         ...
 
     def observe(self) -> Observation:

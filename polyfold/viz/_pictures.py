@@ -41,6 +41,7 @@ def filmstrip_of(episode: Episode, path: str | Path | None = None) -> NDArray[np
         path=path,
         result_shown=result,
         sides=() if result is None else sides_of(episode.garment),
+        photo=episode.garment.photo,
     )
 
 

@@ -13,7 +13,7 @@ from polyfold.geometry import FoldLine
 from polyfold.polygon import FoldedModel, Template
 from polyfold.tasks import Task
 from polyfold.types import Action, Observation, Scene
-from polyfold.viz._draw._canvas import Canvas, Page
+from polyfold.viz._draw._canvas import Canvas, Page, fitted
 from polyfold.viz._draw._drawing import draw_action, draw_fold_line
 from polyfold.viz._draw._overlays import overlay
 from polyfold.viz._draw._polygons import TABLE, grounding_picture, polygon_picture
@@ -110,7 +110,18 @@ def _task(task: Task) -> Image:
 
 @picture_of.register
 def _garment(garment: Garment) -> Image:
-    """The garment spread flat, upright, with its keypoints by name and its size."""
+    """The garment spread flat, upright, with its keypoints by name and its size; before it the photo it comes from."""
+    drawn = _spread(garment)
+    if garment.photo is None:
+        return drawn
+    side = drawn.shape[0]
+    page = Page(side + 12 + drawn.shape[1], side)
+    page.picture(fitted(garment.photo, side), 0, 0)
+    page.picture(drawn, side + 12, 0)
+    return page.image()
+
+
+def _spread(garment: Garment) -> Image:
     from polyfold.polygon import FoldedModel
 
     flat = garment.mesh.vertices

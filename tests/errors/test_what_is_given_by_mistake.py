@@ -1,10 +1,10 @@
 """What is given in place of what was meant gets an answer that says what to give."""
 
 import pytest
+from polyfold_interchange import write_dataset
 
 import polyfold
 from polyfold.errors import PolyfoldError
-from polyfold_interchange import write_dataset
 
 
 @pytest.mark.parametrize(

@@ -80,6 +80,7 @@ def filmstrip(
     columns: int = 5,
     result_shown: Image | None = None,
     sides: Sequence[tuple[str, Colour]] = (),
+    photo: Image | None = None,
 ) -> Image:
     """Lay out an episode: one panel per step and a last one with the result, and write it if a path is given.
 
@@ -94,11 +95,13 @@ def filmstrip(
         columns: most panels in a row.
         result_shown: what is shown in the last picture's place, the same view at another size.
         sides: what the sides of the cloth are called, and their colours.
+        photo: the real garment that the simulated one is the twin of, shown first.
 
     Returns:
         The page, uint8, shape (H', W', 3).
     """
-    panels = [_step_panel(number, frame) for number, frame in enumerate(frames, start=1)]
+    panels = [] if photo is None else [_result_panel(Frame(photo), "The photo", "", None)]
+    panels += [_step_panel(number, frame) for number, frame in enumerate(frames, start=1)]
     panels.append(_result_panel(Frame(result_rgb, shown=result_shown), result_title, result_caption, ideal_outline))
     rows = [panels[i : i + columns] for i in range(0, len(panels), columns)]
     signs = [("■", name, colour) for name, colour in sides]
