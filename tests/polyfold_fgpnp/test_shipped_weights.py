@@ -13,11 +13,14 @@ import pytest
 
 pytest.importorskip("torch")
 from polyfold_fgpnp.data.dataset import load_dataset
+from polyfold_fgpnp.data.packing import read_packed
+from polyfold_fgpnp.policies.weights import load_weights, weights_file
 from polyfold_fgpnp.training.ranks import rank_correlation
 
 from polyfold import plugins
 
 DATA = Path(__file__).parents[1] / "data" / "heldout.zip"
+PUBLISHED = Path(__file__).parents[2] / "experiments" / "data"
 
 LESS_THAN_CHANCE = 4.0
 """How much less picks by the map are off than those at random, at least [mm]."""
@@ -74,3 +77,28 @@ def test_a_map_that_is_flipped_or_of_the_other_direction_is_worse(states, policy
     found = order(states, lambda line, scene, picks: at(*policy.action_map(line, scene), picks))
     assert found > order(states, flipped) + IN_PLACE
     assert found > order(states, exchanged) + IN_PLACE
+
+
+EQUAL = {"csam-2000": "csam", "1sam": "1sam", "2sam": "2sam", "vertex-learned": "vertex"}
+"""Weights of the paper's ablations, and the published data set that each learned from."""
+
+
+@pytest.mark.parametrize("name", EQUAL)
+def test_ablations_differ_in_what_they_value_and_in_the_picks_of_their_data_alone(name):
+    def told(of):
+        config = dict(load_weights(weights_file(of))[1].config)
+        return {**config, "data": None, "network": {**config["network"], "variant": None}}
+
+    network, provenance = load_weights(weights_file(name))
+    assert told(name) == told("csam-2000")
+    assert network.config.variant == name.removesuffix("-2000")
+    assert (provenance.config["reward"], provenance.config["network"]["frame"]) == ("contour", "camera")
+    description, _ = read_packed(PUBLISHED / f"folds-{EQUAL[name]}-0.zip")
+    assert provenance.data == (description["hash"],)
+    assert 1700 < provenance.folds <= 2000
+
+
+def test_policies_that_are_named_after_them_use_them():
+    for name in ("1sam", "2sam", "vertex-learned"):
+        assert plugins.create("policies", name).config.weights == name
+    assert plugins.create("policies", "csam+caso").config.weights == "csam"

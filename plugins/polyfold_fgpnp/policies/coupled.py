@@ -88,12 +88,17 @@ class CoupledActionMap(Coupled):
 class VertexLearned(CoupledActionMap):
     """As the coupled spatial action map, but only visible vertices of the polygon model are picked first.
 
-    So what the dense map adds can be told from what the network adds. A network trained on picks at vertices alone,
-    as the paper's, will do too.
+    The network was trained on picks at the outline's corners alone, as the paper's. With weights of ``csam`` what the
+    dense map adds can be told from what the network adds.
     """
 
     variant: ClassVar[str] = "vertex-learned"
     also: ClassVar[tuple[str, ...]] = ("csam",)
+
+    class Config(CoupledConfig):
+        """Parameters."""
+
+        weights: str = Field(default="vertex-learned", description=WEIGHTS)
 
     def _candidates(self, region: FoldRegion, scene: Scene) -> Floats:
         return np.array([nearest_point(region.points, vertex) for vertex in lifted_vertices(region, scene)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -69,7 +70,9 @@ def _learn(
                 so_far = replace(provenance, config={**provenance.config, "epochs_done": epoch + 1})
                 save_weights(out / snapshot_name(epoch + 1), run.network, so_far)
             run.save(out / "checkpoint.safetensors", epoch + 1)
-            bar.set_postfix({name: f"{value:.3f}" for name, value in found.items()}, refresh=False)
+            # Of states with one trial each no ranks are known.
+            known = {name: f"{value:.3f}" for name, value in found.items() if math.isfinite(value)}
+            bar.set_postfix(known, refresh=False)
             bar.update()
 
 
