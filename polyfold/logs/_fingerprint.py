@@ -44,10 +44,14 @@ class Fingerprint(BaseModel):
     files: dict[str, str] = Field(default_factory=dict)
     git: dict[str, GitState] = Field(default_factory=dict)
 
-    def differences(self, other: Fingerprint) -> tuple[str, ...]:
+    def differences(self, other: Fingerprint, with_new: bool = True) -> tuple[str, ...]:
         """What is otherwise in ``other``, one line each; what could not be read counts as otherwise.
 
         A commit alone is a difference too, although :meth:`digest` is the same: it may change what is not looked at.
+
+        Args:
+            other: the later one.
+            with_new: whether what only ``other`` depends on is a difference.
         """
         lines: list[str] = []
         for what, mine, theirs in (
@@ -57,7 +61,7 @@ class Fingerprint(BaseModel):
             ("file", self.files, other.files),
             ("commit of", _shown(self.git), _shown(other.git)),
         ):
-            for name in sorted({*mine, *theirs}):
+            for name in sorted({*mine, *theirs} if with_new else mine):
                 old, new = mine.get(name, "absent"), theirs.get(name, "absent")
                 if old != new or new == UNREADABLE:
                     lines.append(f"{what} {name}: {_short(old)} then, {_short(new)} now")

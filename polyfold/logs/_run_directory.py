@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -51,6 +51,8 @@ class RunDirectory(Generic[Record]):
         metrics: how each metric is shown.
         criteria: bounds of each success criterion, the run's own first.
         components: by variant and field of its experiment, the components in use, their defaults included.
+        extends: whether what is asked now, its second argument, is what was asked before, its first, and more; the
+            directory is gone on with then.
         redescribe: take the directory for this configuration's although its description is damaged, which is kept
             beside the new one.
 
@@ -68,6 +70,7 @@ class RunDirectory(Generic[Record]):
         metrics: Mapping[str, MetricRecord] | None = None,
         criteria: Mapping[str, tuple[Threshold, ...]] | None = None,
         components: Mapping[str, dict[str, ComponentSpec]] | None = None,
+        extends: Callable[[Mapping[str, Any], Mapping[str, Any]], bool] = lambda before, now: False,
         redescribe: bool = False,
     ) -> None:
         self.path = Path(path)
@@ -95,7 +98,8 @@ class RunDirectory(Generic[Record]):
             self._describe(self._now)
         self._lines.repair()
         self._set_damage_aside()
-        if self.run.asked != plain:
+        self._grown = self.run.asked != plain and bool(self._lines.read()) and extends(self.run.asked, plain)
+        if self.run.asked != plain and not self._grown:
             self._replace()
 
     def _replace(self) -> None:
@@ -165,9 +169,10 @@ class RunDirectory(Generic[Record]):
             self._describe(self._now)
             return
         now = self._now.fingerprint or Fingerprint()
-        before = self.run.changes[-1].fingerprint if self.run.changes else self.run.fingerprint
-        differences = (before or Fingerprint()).differences(now)
+        before = (self.run.changes[-1].fingerprint if self.run.changes else self.run.fingerprint) or Fingerprint()
+        differences = before.differences(now, with_new=not self._grown)
         if not differences:
+            self._ask_for_more()
             return
         if not accept_change:
             raise ConfigError(
@@ -191,6 +196,20 @@ class RunDirectory(Generic[Record]):
                 }
             )
         )
+        self._ask_for_more()
+
+    def _ask_for_more(self) -> None:
+        """What is finished counts in a run that grew; what the rest depends on besides is noted."""
+        if not self._grown:
+            return
+        components = {**self.run.components, **self._now.components}
+        update: dict[str, Any] = {"asked": self._now.asked, "components": components}
+        if self.run.changes:
+            last = self.run.changes[-1].model_copy(update={"fingerprint": self._now.fingerprint})
+            update["changes"] = (*self.run.changes[:-1], last)
+        else:
+            update["fingerprint"] = self._now.fingerprint
+        self._describe(self.run.model_copy(update=update))
 
     def append(self, record: Record) -> None:
         """Add a finished episode; it is on disk when this returns."""

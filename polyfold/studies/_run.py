@@ -2,15 +2,17 @@
 
 A finished episode is on disk before the next is waited for, so killing a run at any moment loses at most what was in
 flight, and running it again does only what is missing, and again what failed for lack of an answer by the language
-model. A run does not go on with changed code, prompts or weights unless that is asked for.
+model. A run does not go on with changed code, prompts or weights unless that is asked for. One that is asked for
+further variants or more garments keeps what it has and runs the rest.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from polyfold import plugins
 from polyfold.errors import ConfigError
@@ -96,8 +98,21 @@ def _opened(
         metric_records(bounds[study.criteria[0]]),
         bounds,
         {variant: components_in_use(experiment_of(study, variant), kinds) for variant in study.variants},
+        extends=_asks_for_more,
         redescribe=accept_change,
     )
+
+
+def _asks_for_more(before: Mapping[str, Any], now: Mapping[str, Any]) -> bool:
+    """Whether a study is one from before with further variants or more garments, and otherwise the same.
+
+    What others published is only shown, and may change.
+    """
+    old, new = before["study"], now["study"]
+    may_grow = ("variants", "factors")
+    same = all(old.get(name) == new.get(name) for name in {*old, *new} - {*may_grow, "garments", "published"})
+    kept = all(new[name].get(key) == value for name in may_grow for key, value in old[name].items())
+    return same and kept and new["garments"] >= old["garments"]
 
 
 def study_fingerprint(study: Study, garment_kinds: Iterable[str]) -> Fingerprint:
