@@ -3,6 +3,7 @@
 from polyfold.plugins.hookspecs import hookimpl
 
 TORCH = ("polyfold[torch]",)
+SENTENCES = ("polyfold[torch,baselines]",)
 
 
 @hookimpl
@@ -11,6 +12,7 @@ def register_agents(register):
     agents = "polyfold_baselines.agents"
     register("nearest-demo", f"{agents}.nearest:NearestDemo", "copies the closest demonstration")
     register("foldsformer", f"{agents}.foldsformer:Foldsformer", "goal pictures to heatmaps by attention", TORCH)
+    register("bifold", f"{agents}.bifold:BiFold", "a sentence and the cloth to heatmaps", SENTENCES)
 
 
 @hookimpl

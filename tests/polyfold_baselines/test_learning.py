@@ -74,10 +74,8 @@ def test_what_is_turned_and_moved_takes_its_points_along(seed, x, y):
 def overfitted(demonstrated, tmp_path_factory):
     out = tmp_path_factory.mktemp("fit")
     config = FitConfig(row="foldsformer", demos=str(demonstrated), passes=1200, learning_rate=2e-3, **SMALL)
-    before = fit(
-        config.model_copy(update={"passes": 8}), Foldsformer.network, tmp_path_factory.mktemp("b"), progress=False
-    )
-    return before, fit(config, Foldsformer.network, out, progress=False)
+    before = fit(config.model_copy(update={"passes": 8}), Foldsformer, tmp_path_factory.mktemp("b"), progress=False)
+    return before, fit(config, Foldsformer, out, progress=False)
 
 
 def test_it_learns_where_to_pick(overfitted):
@@ -102,7 +100,7 @@ def test_it_folds_in_a_study_cell(overfitted):
 def test_a_killed_training_goes_on_to_the_same_weights(demonstrated, tmp_path, monkeypatch):
     monkeypatch.setattr(fitting, "LOOK", 2)
     config = FitConfig(row="foldsformer", demos=str(demonstrated), passes=48, **SMALL)
-    straight = fit(config, Foldsformer.network, tmp_path / "straight", progress=False)
+    straight = fit(config, Foldsformer, tmp_path / "straight", progress=False)
     step = fitting._Learner._step
 
     def interrupted(learner, number):
@@ -113,12 +111,12 @@ def test_a_killed_training_goes_on_to_the_same_weights(demonstrated, tmp_path, m
     with monkeypatch.context() as patch:
         patch.setattr(fitting._Learner, "_step", interrupted)
         with pytest.raises(KeyboardInterrupt):
-            fit(config, Foldsformer.network, tmp_path / "killed", progress=False)
-    resumed = fit(config, Foldsformer.network, tmp_path / "killed", progress=False)
+            fit(config, Foldsformer, tmp_path / "killed", progress=False)
+    resumed = fit(config, Foldsformer, tmp_path / "killed", progress=False)
     one, other = (load(path, "foldsformer", Foldsformer.network).network.state_dict() for path in (straight, resumed))
     assert all(torch.equal(one[name], other[name]) for name in one)
     with pytest.raises(ConfigError, match="another training"):
-        fit(config.model_copy(update={"seed": 1}), Foldsformer.network, tmp_path / "killed", progress=False)
+        fit(config.model_copy(update={"seed": 1}), Foldsformer, tmp_path / "killed", progress=False)
     lines = (tmp_path / "killed" / "metrics.jsonl").read_text().splitlines()
     assert [json.loads(line)["passes"] for line in lines] == [16, 32, 48]
 

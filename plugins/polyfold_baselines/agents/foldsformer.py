@@ -16,13 +16,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from polyfold_baselines.agents.imitation import Imitation
+from polyfold_baselines.agents.imitation import PictureImitation
 
 if TYPE_CHECKING:
     from torch import nn
 
 
-class Foldsformer(Imitation):
+class Foldsformer(PictureImitation):
     """Space-time attention to heatmaps."""
 
     row: ClassVar[str] = "foldsformer"

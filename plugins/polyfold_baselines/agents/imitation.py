@@ -1,4 +1,4 @@
-"""What all agents share that imitate demonstrations, by pictures of their goals, through heatmaps."""
+"""What all agents share that imitate demonstrations through heatmaps, told what to do by pictures or by sentences."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold.plugins.interfaces import Goal, Segmenter
 from polyfold.types import Action, Decision, Observation, Subgoal
-from polyfold_baselines.agents.goals import GoalPictures
+from polyfold_baselines.agents.goals import GoalPictures, InTurn, seen_through
+from polyfold_baselines.demos.window import Window
 
 if TYPE_CHECKING:
-    from torch import nn
+    from torch import Tensor, nn
 
     from polyfold_baselines.learning.weights import Weights
 
@@ -33,13 +34,14 @@ class ImitationConfig(BaseModel):
 
 
 class Imitation(ABC):
-    """Sees the cloth and its next goal as depth, and picks and places where a network's heatmaps are highest.
+    """Sees the cloth as depth, is told what the next fold should be, and picks and places where heatmaps are highest.
 
-    With steps guidance it folds once towards each subgoal; with the final goal alone as often as the task takes.
+    With steps guidance it folds once for each subgoal; with the final goal alone as often as the task takes.
     """
 
     row: ClassVar[str]
-    requires: ClassVar[frozenset[str]] = frozenset({"subgoal_depths", "fold_count"})
+    guide: ClassVar[str]
+    requires: ClassVar[frozenset[str]]
     uses: ClassVar[tuple[str, ...]] = ("segmenter",)
     Config: ClassVar[type[ImitationConfig]] = ImitationConfig
 
@@ -55,12 +57,15 @@ class Imitation(ABC):
     @classmethod
     @abstractmethod
     def network(cls, config: Mapping[str, Any]) -> nn.Module:
-        """The untrained network of what ``fit.json`` says."""
+        """The untrained network of what ``fit.json`` says: ``network(now, wanted)`` gives heatmaps."""
 
+    @abstractmethod
     def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
-        """Look at the garment, and at the goals as they would look from there."""
-        self._goals = GoalPictures(goal, observation, self._segmenter.segment(observation))
-        return ()
+        """Look at the garment, and note what each fold should lead to."""
+
+    @abstractmethod
+    def _wanted(self) -> tuple[Tensor, Subgoal | None] | None:
+        """What the next fold should lead to, as the network takes it, and in words if in any; None after the last."""
 
     def decide(self, observation: Observation) -> Decision | None:
         """The next fold; None after the last."""
@@ -69,18 +74,55 @@ class Imitation(ABC):
         from polyfold_baselines.learning import heatmaps
         from polyfold_baselines.learning.examples import as_frame
 
-        if (wanted := self._goals.next()) is None:
+        if (wanted := self._wanted()) is None:
             return None
-        now = self._goals.now(observation, self._segmenter.segment(observation))
-        frames = torch.stack([as_frame(*now), as_frame(*wanted)])[None]
+        now = seen_through(self._window, observation, self._segmenter.segment(observation))
         with torch.inference_mode():
-            logits = self._weights.network(frames)
+            logits = self._weights.network(as_frame(*now)[None], wanted[0][None])
         picks, places = heatmaps.read(logits, now[1][None], int(self._weights.config["arms"]))
-        return Decision(self._action(*heatmaps.merged(picks[0], places[0]), observation))
+        return Decision(self._action(*heatmaps.merged(picks[0], places[0]), observation), wanted[1])
 
     def _action(self, picks: Floats, places: Floats, observation: Observation) -> Action:
         limit = [observation.camera.width - 1.0, observation.camera.height - 1.0]
-        return Action(*(np.clip(self._goals.window.to_pixels(points), 0.0, limit) for points in (picks, places)))
+        return Action(*(np.clip(self._window.to_pixels(points), 0.0, limit) for points in (picks, places)))
+
+
+class PictureImitation(Imitation):
+    """Is told by a picture, in depth, of what the cloth should look like."""
+
+    guide: ClassVar[str] = "picture"
+    requires: ClassVar[frozenset[str]] = frozenset({"subgoal_depths", "fold_count"})
+
+    def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
+        """Look at the garment, and at the goals as they would look from there."""
+        self._goals = GoalPictures(goal, observation, self._segmenter.segment(observation))
+        self._window = self._goals.window
+        return ()
+
+    def _wanted(self) -> tuple[Tensor, Subgoal | None] | None:
+        from polyfold_baselines.learning.examples import as_frame
+
+        view = self._goals.next()
+        return None if view is None else (as_frame(*view), None)
+
+
+class SentenceImitation(Imitation):
+    """Is told by a sentence."""
+
+    guide: ClassVar[str] = "sentence"
+    requires: ClassVar[frozenset[str]] = frozenset({"subgoal_texts", "fold_count"})
+
+    def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
+        """Look at the garment, and hear what to do."""
+        self._window = Window.around(self._segmenter.segment(observation))
+        self._sentences = InTurn(goal.subgoal_texts or (), goal.fold_count)
+        return ()
+
+    def _wanted(self) -> tuple[Tensor, Subgoal | None] | None:
+        from polyfold_baselines.learning.sentences import encoded
+
+        text = self._sentences.next()
+        return None if text is None else (encoded([text])[0], Subgoal(text))
 
 
 def _version(path: Path) -> tuple[int, int]:

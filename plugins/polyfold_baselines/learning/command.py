@@ -7,7 +7,10 @@ from pathlib import Path
 
 from polyfold.errors import ConfigError, did_you_mean
 
-ROWS = {"foldsformer": "polyfold_baselines.agents.foldsformer:Foldsformer"}
+ROWS = {
+    "foldsformer": "polyfold_baselines.agents.foldsformer:Foldsformer",
+    "bifold": "polyfold_baselines.agents.bifold:BiFold",
+}
 """Baselines that are trained so."""
 
 
@@ -46,6 +49,6 @@ class Fit:
             config = FitConfig(row=arguments.row, demos=str(arguments.demos), **chosen)
         except ValidationError as error:
             raise ConfigError(validation_problem(error, FitConfig.model_fields)) from error
-        weights = fit(config, cls.network, arguments.out, arguments.device)
+        weights = fit(config, cls, arguments.out, arguments.device)
         print(f"weights: {weights}")
         return 0

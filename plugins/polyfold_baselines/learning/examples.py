@@ -27,15 +27,17 @@ class Examples:
     Attributes:
         frames: cloth before the fold, and goal, each as height and mask, float32, shape (N, 2, 2, SIDE, SIDE).
         points: picks and places, see :func:`polyfold_baselines.learning.heatmaps.points_of`.
-        rows: which of the demonstrations' folds they are, shape (N,).
+        sentences: which sentence asks for each fold, an index into ``texts``, shape (N,).
+        texts: the sentences.
     """
 
     frames: Tensor
     points: NDArray[np.float32]
-    rows: NDArray[np.int64]
+    sentences: NDArray[np.int64]
+    texts: tuple[str, ...]
 
     def __len__(self) -> int:
-        return len(self.rows)
+        return len(self.points)
 
     @property
     def masks(self) -> NDArray[np.bool_]:
@@ -77,4 +79,6 @@ def _examples(demos: Demos, rows: NDArray[np.int64]) -> Examples:
         as_frame(columns[height][rows] / PER_METRE, unpacked(columns[mask][rows]))
         for height, mask in (("height", "mask"), ("goal_height", "goal_mask"))
     ]
-    return Examples(torch.stack(seen, dim=1), points_of(columns["picks"][rows], columns["places"][rows]), rows)
+    texts, sentences = np.unique(columns["text"][rows], return_inverse=True)
+    points = points_of(columns["picks"][rows], columns["places"][rows])
+    return Examples(torch.stack(seen, dim=1), points, sentences, tuple(map(str, texts)))

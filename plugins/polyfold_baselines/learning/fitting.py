@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 from torch import Tensor, nn
 
@@ -19,7 +20,7 @@ from polyfold.errors import ConfigError
 from polyfold.logs import JsonLines, exclusive
 from polyfold_baselines.demos.store import Demos
 from polyfold_baselines.learning import heatmaps
-from polyfold_baselines.learning.examples import make_examples
+from polyfold_baselines.learning.examples import Examples, make_examples
 from polyfold_baselines.learning.weights import Weights, save
 
 LOOK = 250
@@ -29,8 +30,17 @@ MOST_TURN, MOST_SHIFT, MOST_SIZE = math.radians(12.0), 6.0, 0.08
 """Pictures are turned [rad], moved [px] and scaled by up to so much: no more than garments lie differently. They are
 never mirrored, since a sentence or a side would then be wrong."""
 
-Build = Callable[[Mapping[str, Any]], nn.Module]
-"""Makes the network of what ``fit.json`` says."""
+
+class Row(Protocol):
+    """A baseline that is trained so; its agent's class."""
+
+    row: ClassVar[str]
+    guide: ClassVar[str]
+
+    @classmethod
+    def network(cls, config: Mapping[str, Any]) -> nn.Module:
+        """The untrained network of what ``fit.json`` says."""
+        ...
 
 
 class FitConfig(BaseModel):
@@ -59,12 +69,12 @@ class _Progress:
     minutes: float = 0.0
 
 
-def fit(config: FitConfig, build: Build, out: Path, device: str = "auto", progress: bool = True) -> Path:
+def fit(config: FitConfig, row: type[Row], out: Path, device: str = "auto", progress: bool = True) -> Path:
     """Train, or go on with training, and return the path of the weights.
 
     Args:
         config: what to do.
-        build: makes the network of what ``fit.json`` says.
+        row: the baseline.
         out: folder for ``weights.safetensors``, ``checkpoint.safetensors`` and ``metrics.jsonl``.
         device: ``cpu``, ``cuda`` or ``auto``.
         progress: show a progress bar.
@@ -81,7 +91,7 @@ def fit(config: FitConfig, build: Build, out: Path, device: str = "auto", progre
         if held.exists() and held.read_text(encoding="utf-8") != note:
             raise ConfigError(f"{out} holds another training; choose another folder")
         held.write_text(note, encoding="utf-8")
-        learner = _Learner(config, build(json.loads(note)), demos, device)
+        learner = _Learner(config, row, json.loads(note), demos, device)
         learner.resume(out / "checkpoint.safetensors")
         learner.run(JsonLines(out / "metrics.jsonl"), out / "checkpoint.safetensors", progress)
         found = Weights(learner.network, json.loads(note), learner.progress.minutes, learner.last)
@@ -89,14 +99,29 @@ def fit(config: FitConfig, build: Build, out: Path, device: str = "auto", progre
     return out / "weights.safetensors"
 
 
+class _Told:
+    """Folds, and what tells a network which one is wanted: the goal's picture, or a sentence."""
+
+    def __init__(self, examples: Examples, guide: str) -> None:
+        from polyfold_baselines.learning.sentences import encoded
+
+        self.examples = examples
+        self._tokens = encoded(examples.texts) if guide == "sentence" else None
+
+    def wanted(self, frames: Tensor, chosen: NDArray[np.int64]) -> Tensor:
+        """For folds, shape (N,), of which these are the frames, shape (N, 2, 2, SIDE, SIDE)."""
+        return frames[:, 1] if self._tokens is None else self._tokens[self.examples.sentences[chosen]]
+
+
 class _Learner:
     """A network while it learns."""
 
-    def __init__(self, config: FitConfig, network: nn.Module, demos: Demos, device: str) -> None:
+    def __init__(self, config: FitConfig, row: type[Row], note: Mapping[str, Any], demos: Demos, device: str) -> None:
         self._config, self.arms = config, int(demos.plan.arms)
         self._device = torch.device(("cuda" if torch.cuda.is_available() else "cpu") if device == "auto" else device)
-        self.network = network.to(self._device)
-        self._learned, self._held = make_examples(demos, config.most_error_mm)
+        self.network = row.network(note).to(self._device)
+        learned, held = make_examples(demos, config.most_error_mm)
+        self._learned, self._held = (_Told(examples, row.guide) for examples in (learned, held))
         self._optimizer = torch.optim.AdamW(
             self.network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay
         )
@@ -130,13 +155,15 @@ class _Learner:
 
     def _step(self, number: int) -> float:
         rng = np.random.default_rng([self._config.seed, number])
-        chosen = rng.integers(len(self._learned), size=self._config.batch)
-        frames, points = _moved(self._learned.frames[chosen], torch.from_numpy(self._learned.points[chosen]), rng)
+        chosen = rng.integers(len(self._learned.examples), size=self._config.batch)
+        examples = self._learned.examples
+        frames, points = _moved(examples.frames[chosen], torch.from_numpy(examples.points[chosen]), rng)
+        wanted = self._learned.wanted(frames, chosen)
         for group in self._optimizer.param_groups:
             group["lr"] = self._config.learning_rate * _rate(number, self.steps)
         self.network.train()
         with torch.autocast(self._device.type, torch.bfloat16, self._config.precision == "bfloat16"):
-            logits = self.network(frames.to(self._device))
+            logits = self.network(frames[:, 0].to(self._device), wanted.to(self._device))
         found = heatmaps.loss(logits, points.to(self._device), self.arms)
         self._optimizer.zero_grad(set_to_none=True)
         found.backward()
@@ -148,13 +175,14 @@ class _Learner:
         """Loss and pick error on garments held out."""
         errors, losses = [], []
         self.network.eval()
+        held = self._held.examples
         with torch.inference_mode():
-            for begin in range(0, len(self._held), 64):
-                part = slice(begin, begin + 64)
-                logits = self.network(self._held.frames[part].to(self._device))
-                points = self._held.points[part]
+            for part in np.array_split(np.arange(len(held)), math.ceil(len(held) / 64)):
+                wanted = self._held.wanted(held.frames[part], part)
+                logits = self.network(held.frames[part, 0].to(self._device), wanted.to(self._device))
+                points = held.points[part]
                 losses.append(float(heatmaps.loss(logits, torch.from_numpy(points).to(self._device), self.arms)))
-                picks, _ = heatmaps.read(logits, self._held.masks[part], self.arms)
+                picks, _ = heatmaps.read(logits, held.masks[part], self.arms)
                 errors.append(heatmaps.pick_error(picks, points))
         return {"held_out_loss": float(np.mean(losses)), "pick_error_px": float(np.concatenate(errors).mean())}
 

@@ -46,16 +46,20 @@ class SpaceTime(nn.Module):
             nn.Conv2d(64, 32, 3, padding=1), nn.GELU(), nn.Conv2d(32, 2 * arms, 3, padding=1),
         )  # fmt: skip
 
-    def forward(self, frames: Tensor) -> Tensor:
-        """Heatmaps, shape (N, 2 arms, SIDE / 2, SIDE / 2), of frames, shape (N, 2, CHANNELS, SIDE, SIDE)."""
-        count = len(frames)
+    def forward(self, now: Tensor, wanted: Tensor) -> Tensor:
+        """Heatmaps, shape (N, 2 arms, SIDE / 2, SIDE / 2).
+
+        Args:
+            now, wanted: the cloth and what it should be, shape (N, CHANNELS, SIDE, SIDE).
+        """
+        count, frames = len(now), torch.stack([now, wanted], dim=1)
         shallow = self.stem(frames.flatten(0, 1))
         tokens = self.embed(shallow).flatten(2).transpose(1, 2)
         tokens = tokens.reshape(count, 2, GRID * GRID, -1) + self.place + self.time
         for block in self.blocks:
             tokens = block(tokens)
-        now, goal = self.norm_now(tokens[:, 0]), self.norm_goal(tokens[:, 1])
-        both = self.norm(tokens[:, 0] + self.across(now, goal, goal, need_weights=False)[0])
+        cloth, goal = self.norm_now(tokens[:, 0]), self.norm_goal(tokens[:, 1])
+        both = self.norm(tokens[:, 0] + self.across(cloth, goal, goal, need_weights=False)[0])
         deep = self.up(both.transpose(1, 2).reshape(count, -1, GRID, GRID))
         return self.fuse(torch.cat([deep, shallow.reshape(count, -1, *shallow.shape[2:])], dim=1))
 
