@@ -5,6 +5,7 @@ import pytest
 import torch
 from polyfold_baselines.agents.bifold import BiFold
 from polyfold_baselines.agents.goals import InTurn
+from polyfold_baselines.agents.langdef import LangDef
 from polyfold_baselines.learning.fitting import FitConfig, fit
 from polyfold_baselines.learning.weights import load
 
@@ -43,24 +44,25 @@ def test_what_is_told_last_holds_for_the_folds_that_are_left():
     assert (told.final, final.final) == (False, True)
 
 
-@pytest.fixture(scope="module")
-def fitted(demonstrated, tmp_path_factory):
-    config = FitConfig(row="bifold", demos=str(demonstrated), passes=1600, learning_rate=3e-3, **SMALL)
-    return fit(config, BiFold, tmp_path_factory.mktemp("bifold"), progress=False)
+@pytest.fixture(scope="module", params=[BiFold, LangDef], ids=lambda row: row.row)
+def fitted(request, demonstrated, tmp_path_factory):
+    row = request.param
+    config = FitConfig(row=row.row, demos=str(demonstrated), passes=1200, learning_rate=3e-3, **SMALL)
+    return row, fit(config, row, tmp_path_factory.mktemp(row.row), progress=False)
 
 
 def test_another_sentence_about_the_same_cloth_is_another_fold(fitted, demonstrated):
     from polyfold_baselines.demos.store import Demos
     from polyfold_baselines.learning.examples import make_examples
 
-    network = load(fitted, "bifold", BiFold.network).network
+    row, weights = fitted
+    network = load(weights, row.row, row.network).network
     learned, _ = make_examples(Demos.read(demonstrated), 40.0)
-    on_square = [
-        k for k, text in enumerate(learned.texts) if text.startswith(("fold bottom left onto the mid", "fold top left"))
-    ]
+    starts = ("fold bottom left onto the middle", "fold top left onto bottom right")
+    on_square = [next(k for k, text in enumerate(learned.texts) if text.startswith(start)) for start in starts]
     cloth = learned.frames[[int(np.flatnonzero(learned.sentences == on_square[0])[0])] * 2, 0]
     with torch.inference_mode():
-        maps = network(cloth, sentences.encoded([learned.texts[k] for k in on_square[:2]]))
+        maps = network(cloth, sentences.encoded([learned.texts[k] for k in on_square]))
     one, other = maps[:, 0].softmax(-1)
     assert (one - other).abs().max() > 0.05
 
@@ -68,7 +70,8 @@ def test_another_sentence_about_the_same_cloth_is_another_fold(fitted, demonstra
 def test_it_folds_what_the_sentence_says(fitted):
     import polyfold
 
-    experiment = polyfold.Experiment.of(agent={"name": "bifold", "weights": str(fitted)}, guidance="steps")
+    row, weights = fitted
+    experiment = polyfold.Experiment.of(agent={"name": row.row, "weights": str(weights)}, guidance="steps")
     cloth = polyfold.garment("square", seed=1001, edge_length=0.022)
     episode = polyfold.api._fold.attempt("", cloth, 1001, experiment, task="square-corner-bottom_left")
     assert len(episode.steps) == 1
