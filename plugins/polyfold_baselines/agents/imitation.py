@@ -44,6 +44,7 @@ class Imitation(ABC):
     requires: ClassVar[frozenset[str]]
     uses: ClassVar[tuple[str, ...]] = ("segmenter",)
     Config: ClassVar[type[ImitationConfig]] = ImitationConfig
+    _window: Window
 
     def __init__(self, config: ImitationConfig, segmenter: Segmenter) -> None:
         self._weights = _read(type(self), config.weights.resolve(), _version(config.weights))

@@ -108,13 +108,13 @@ def _sewn(mesh: Mesh) -> NDArray[np.bool_]:
 
 
 def _nearest(mesh: Mesh, coarse: Mesh) -> NDArray[np.int64]:
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     match = np.zeros(len(coarse.vertices), np.int64)
     for layer in range(mesh.layers):
         theirs = np.flatnonzero((mesh.layer == layer) | mesh.seam)
         ours = np.flatnonzero(coarse.layer == layer)
-        match[ours] = theirs[cKDTree(mesh.vertices[theirs]).query(coarse.vertices[ours])[1]]
+        match[ours] = theirs[KDTree(mesh.vertices[theirs]).query(coarse.vertices[ours])[1]]
     return match
 
 

@@ -58,7 +58,8 @@ class Wang:
 
     def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
         """Copy the garment, and note where each fold should bring it."""
-        ideals = goal.ideals or ()
+        assert goal.ideals
+        ideals = goal.ideals
         self._state, self._rng = goal.state, np.random.default_rng(goal.seed)
         mesh = ideals[0].mesh
         self._copy = Copy.of(mesh, goal.state(), goal.kind, self._config.particles, self._config.simulator)
@@ -87,7 +88,7 @@ class Wang:
         for _ in range(config.rounds):
             chosen = self._rng.choice(len(points), config.samples, p=chance)
             moves = mean[chosen] + spread[chosen] * self._rng.standard_normal((config.samples, 2))
-            tries = [self._tried(before, targets, points[k], move) for k, move in zip(chosen, moves, strict=True)]
+            tries = [self._tried(before, targets, int(points[k]), move) for k, move in zip(chosen, moves, strict=True)]
             found += tries
             order = np.argsort([each.cost for each in tries])[: max(2, round(config.elite * config.samples))]
             chance = SMOOTHED * chance + (1 - SMOOTHED) * np.bincount(chosen[order], minlength=len(points)) / len(order)
@@ -107,7 +108,7 @@ class Wang:
     def _tried(self, before: SimState, targets: Floats, point: int, by: Floats) -> _Try:
         ends = self._copy.lands(before, self._action(before, point, by))
         cost = np.inf if ends is None else float(np.linalg.norm(ends - targets, axis=1).mean())
-        return _Try(int(point), by, cost)
+        return _Try(point, by, cost)
 
     def _action(self, before: SimState, point: int, by: Floats) -> Action:
         return Action(*pixels(before.camera, before.positions[point], by))
