@@ -11,6 +11,7 @@ def register_agents(register):
     """Register the agents."""
     agents = "polyfold_baselines.agents"
     register("nearest-demo", f"{agents}.nearest:NearestDemo", "copies the closest demonstration")
+    register("ltf", f"{agents}.ltf:LearningToFold", "goal pictures to values of drags, from folds nobody meant", TORCH)
     register("wang", f"{agents}.wang:Wang", "search in a simulator for a pick at a corner of a simplified mesh")
     register("foldsformer", f"{agents}.foldsformer:Foldsformer", "goal pictures to heatmaps by attention", TORCH)
     register("langdef", f"{agents}.langdef:LangDef", "a sentence, depth and a graph to picks at its nodes", SENTENCES)

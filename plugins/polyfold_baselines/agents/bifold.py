@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from polyfold_baselines.agents.imitation import SentenceImitation
 
 if TYPE_CHECKING:
-    from torch import nn
+    from polyfold_baselines.learning.network import Network
 
 
 class BiFold(SentenceImitation):
@@ -26,7 +26,7 @@ class BiFold(SentenceImitation):
     row: ClassVar[str] = "bifold"
 
     @classmethod
-    def network(cls, config: Mapping[str, Any]) -> nn.Module:
+    def network(cls, config: Mapping[str, Any]) -> Network:
         """The network."""
         from polyfold_baselines.learning.conditioned import ConditionedUNet
 

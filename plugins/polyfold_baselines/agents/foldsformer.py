@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from polyfold_baselines.agents.imitation import PictureImitation
 
 if TYPE_CHECKING:
-    from torch import nn
+    from polyfold_baselines.learning.network import Network
 
 
 class Foldsformer(PictureImitation):
@@ -28,7 +28,7 @@ class Foldsformer(PictureImitation):
     row: ClassVar[str] = "foldsformer"
 
     @classmethod
-    def network(cls, config: Mapping[str, Any]) -> nn.Module:
+    def network(cls, config: Mapping[str, Any]) -> Network:
         """The network."""
         from polyfold_baselines.learning.spacetime import SpaceTime
 

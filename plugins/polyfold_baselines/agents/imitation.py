@@ -18,8 +18,9 @@ from polyfold_baselines.agents.goals import GoalPictures, InTurn, seen_through
 from polyfold_baselines.demos.window import Window
 
 if TYPE_CHECKING:
-    from torch import Tensor, nn
+    from torch import Tensor
 
+    from polyfold_baselines.learning.network import Network
     from polyfold_baselines.learning.weights import Weights
 
 Floats = NDArray[np.float64]
@@ -57,8 +58,8 @@ class Imitation(ABC):
 
     @classmethod
     @abstractmethod
-    def network(cls, config: Mapping[str, Any]) -> nn.Module:
-        """The untrained network of what ``fit.json`` says: ``network(now, wanted)`` gives heatmaps."""
+    def network(cls, config: Mapping[str, Any]) -> Network:
+        """The untrained network of what ``fit.json`` says."""
 
     @abstractmethod
     def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
@@ -80,7 +81,7 @@ class Imitation(ABC):
         now = seen_through(self._window, observation, self._segmenter.segment(observation))
         with torch.inference_mode():
             logits = self._weights.network(as_frame(*now)[None], wanted[0][None])
-        picks, places = heatmaps.read(logits, now[1][None], int(self._weights.config["arms"]))
+        picks, places = self._weights.network.read(logits, now[1][None])
         return Decision(self._action(*heatmaps.merged(picks[0], places[0]), observation), wanted[1])
 
     def _action(self, picks: Floats, places: Floats, observation: Observation) -> Action:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from polyfold_baselines.agents.imitation import SentenceImitation
 
 if TYPE_CHECKING:
-    from torch import nn
+    from polyfold_baselines.learning.network import Network
 
 
 class LangDef(SentenceImitation):
@@ -29,7 +29,7 @@ class LangDef(SentenceImitation):
     row: ClassVar[str] = "langdef"
 
     @classmethod
-    def network(cls, config: Mapping[str, Any]) -> nn.Module:
+    def network(cls, config: Mapping[str, Any]) -> Network:
         """The network."""
         from polyfold_baselines.learning.language import LanguageGraph
 

@@ -22,8 +22,9 @@ class Demos:
         parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder; resumed if it exists")
         parser.add_argument("--arms", type=int, choices=(1, 2), default=2, help="default: 2")
         parser.add_argument(
-            "--agent", choices=("fold-lines", "oracle"), default="fold-lines",
-            help="who folds: once along each true line, or again until it is near the ideal (default: fold-lines)",
+            "--agent", choices=("fold-lines", "oracle", "random-drags"), default="fold-lines",
+            help="who folds: once along each true line, or again until it is near the ideal, or nobody who means it "
+            "(default: fold-lines)",
         )  # fmt: skip
         parser.add_argument("--split", choices=("seen", "unseen"), default="seen", help="of the tasks (default: seen)")
         parser.add_argument("--tasks", nargs="+", default=(), metavar="ID", help="only these tasks")
@@ -66,15 +67,17 @@ def collect(plan: DemoPlan, out: Path, workers: int = 1, progress: bool = True) 
     from polyfold.logs import exclusive
     from polyfold.studies import in_processes
     from polyfold_baselines.demos.demonstrating import demonstrate
+    from polyfold_baselines.demos.drags import drag_at_random
     from polyfold_baselines.demos.store import DemoFolder
 
     plan.check()
+    made = drag_at_random if plan.agent == "random-drags" else demonstrate
     total = len(plan.jobs())
     with exclusive(out):
         folder = DemoFolder(out, plan)
         missing = sorted(set(range(total)) - folder.jobs())
         with tqdm(total=total, initial=total - len(missing), unit="demo", disable=not progress) as bar:
-            for job, arrays in in_processes(partial(demonstrate, plan), missing, workers):
+            for job, arrays in in_processes(partial(made, plan), missing, workers):
                 folder.write(job, arrays)
                 bar.update()
         return folder.finish()

@@ -35,7 +35,8 @@ class DemoPlan(BaseModel):
     """What is demonstrated; the same plan and job give the same demonstration.
 
     Attributes:
-        agent: who folds: ``fold-lines`` once along each line; ``oracle`` tries again until a fold is near the ideal.
+        agent: who folds: ``fold-lines`` once along each line; ``oracle`` tries again until a fold is near the ideal;
+            ``random-drags`` drags one point at random, and again.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -44,13 +45,15 @@ class DemoPlan(BaseModel):
     split: Literal["seen", "unseen"] = Field(default="seen", description="which of its tasks")
     tasks: tuple[str, ...] = Field(default=(), description="only these tasks, by id")
     arms: Literal[1, 2] = Field(default=2, description="with how many arms")
-    agent: Literal["fold-lines", "oracle"] = Field(default="fold-lines", description="who folds")
+    agent: Literal["fold-lines", "oracle", "random-drags"] = Field(default="fold-lines", description="who folds")
     seeds: tuple[int, int] = Field(default=(1000, 1019), description="first and last garment seed, for each task")
     edge_length: float = Field(default=0.018, gt=0.005, le=0.05, description="edge length of the mesh [m]")
     simulator: ComponentSpec = Field(default=ComponentSpec(name="xpbd"), description="what folds")
 
     def check(self) -> None:
-        """Raise ConfigError if a task that is chosen is not there, or is of the other half."""
+        """Raise ConfigError if a task that is chosen is not there, or is of the other half, or arms are too many."""
+        if self.agent == "random-drags" and self.arms != 1:
+            raise ConfigError("random drags are made with one arm; add --arms 1")
         splits = {entry.id: entry.split for entry in suite(self.suite).entries if isinstance(entry, Task)}
         for name in self.tasks:
             if name not in splits:
@@ -127,12 +130,12 @@ def _as_arrays(episode: Episode, goal: Goal, task: Task) -> Arrays:
         camera = step.observation.camera
         wanted = camera.elevation - depth
         rows.append({
-            "height": _heights(window, camera.elevation - step.observation.depth),
-            "mask": _bits(window, segmenter.segment(step.observation)),
-            "goal_height": _heights(window, wanted),
-            "goal_mask": _bits(window, wanted > LOWEST),
-            "picks": _padded(window.to_view(step.action.picks)),
-            "places": _padded(window.to_view(step.action.places)),
+            "height": as_heights(window, camera.elevation - step.observation.depth),
+            "mask": as_bits(window, segmenter.segment(step.observation)),
+            "goal_height": as_heights(window, wanted),
+            "goal_mask": as_bits(window, wanted > LOWEST),
+            "picks": padded(window.to_view(step.action.picks)),
+            "places": padded(window.to_view(step.action.places)),
             "error_mm": np.float32(1000 * np.linalg.norm(step.after.positions - ideal.end.positions, axis=1).mean()),
             "text": np.str_((goal.subgoal_texts or ())[number]),
             "step": np.int8(number),
@@ -144,13 +147,14 @@ def _as_arrays(episode: Episode, goal: Goal, task: Task) -> Arrays:
     return {name: np.stack([row[name] for row in rows]) for name in rows[0]}
 
 
-def _heights(window: Window, heights: NDArray) -> NDArray[np.uint16]:
-    """Heights above the table [m], shape (H, W), through the window."""
+def as_heights(window: Window, heights: NDArray) -> NDArray[np.uint16]:
+    """Heights above the table [m], shape (H, W), through the window, as they are stored."""
     seen = window.view(np.nan_to_num(heights))
     return (seen * PER_METRE).round().clip(0, np.iinfo(np.uint16).max).astype(np.uint16)
 
 
-def _bits(window: Window, mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
+def as_bits(window: Window, mask: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """A mask, shape (H, W), through the window, as packed bits."""
     return np.packbits(window.view(mask) > 0.5)
 
 
@@ -159,7 +163,8 @@ def unpacked(bits: NDArray[np.uint8]) -> NDArray[np.bool_]:
     return np.unpackbits(bits, axis=-1).reshape(-1, SIDE, SIDE).astype(bool)
 
 
-def _padded(points: Floats) -> NDArray[np.float32]:
-    padded = np.full((2, 2), np.nan, np.float32)
-    padded[: len(points)] = points
-    return padded
+def padded(points: Floats) -> NDArray[np.float32]:
+    """Points of one or two arms, shape (A, 2), as two, shape (2, 2): NaN for no second arm."""
+    both = np.full((2, 2), np.nan, np.float32)
+    both[: len(points)] = points
+    return both

@@ -10,6 +10,7 @@ from polyfold.errors import ConfigError, did_you_mean
 ROWS = {
     "foldsformer": "polyfold_baselines.agents.foldsformer:Foldsformer",
     "bifold": "polyfold_baselines.agents.bifold:BiFold",
+    "ltf": "polyfold_baselines.agents.ltf:LearningToFold",
     "langdef": "polyfold_baselines.agents.langdef:LangDef",
 }
 """Baselines that are trained so."""

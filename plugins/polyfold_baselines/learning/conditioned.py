@@ -9,12 +9,13 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
+from polyfold_baselines.learning.network import Network
 from polyfold_baselines.learning.sentences import WIDTH, pooled
 
 CHANNELS = 2
 
 
-class ConditionedUNet(nn.Module):
+class ConditionedUNet(Network):
     """The cloth and a sentence to heatmaps of picks and places.
 
     Args:
@@ -25,6 +26,7 @@ class ConditionedUNet(nn.Module):
 
     def __init__(self, arms: int, width: int = 128, depth: int = 4) -> None:
         super().__init__()
+        self.arms = arms
         widths = [max(16, width >> (depth - level)) for level in range(depth + 1)]
         self.down = nn.ModuleList(_Level(a, b) for a, b in zip([CHANNELS, *widths[:-1]], widths, strict=True))
         self.up = nn.ModuleList(_Level(a + b, b) for a, b in zip(widths[:1:-1], widths[-2:0:-1], strict=True))

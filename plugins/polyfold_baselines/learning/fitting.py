@@ -21,6 +21,7 @@ from polyfold.logs import JsonLines, exclusive
 from polyfold_baselines.demos.store import Demos
 from polyfold_baselines.learning import heatmaps
 from polyfold_baselines.learning.examples import Examples, make_examples
+from polyfold_baselines.learning.network import Network
 from polyfold_baselines.learning.weights import Weights, save
 
 LOOK = 250
@@ -38,7 +39,7 @@ class Row(Protocol):
     guide: ClassVar[str]
 
     @classmethod
-    def network(cls, config: Mapping[str, Any]) -> nn.Module:
+    def network(cls, config: Mapping[str, Any]) -> Network:
         """The untrained network of what ``fit.json`` says."""
         ...
 
@@ -117,7 +118,7 @@ class _Learner:
     """A network while it learns."""
 
     def __init__(self, config: FitConfig, row: type[Row], note: Mapping[str, Any], demos: Demos, device: str) -> None:
-        self._config, self.arms = config, int(demos.plan.arms)
+        self._config = config
         self._device = torch.device(("cuda" if torch.cuda.is_available() else "cpu") if device == "auto" else device)
         self.network = row.network(note).to(self._device)
         learned, held = make_examples(demos, config.most_error_mm)
@@ -163,8 +164,7 @@ class _Learner:
             group["lr"] = self._config.learning_rate * _rate(number, self.steps)
         self.network.train()
         with torch.autocast(self._device.type, torch.bfloat16, self._config.precision == "bfloat16"):
-            logits = self.network(frames[:, 0].to(self._device), wanted.to(self._device))
-        found = heatmaps.loss(logits, points.to(self._device), self.arms)
+            found = self.network.loss(frames[:, 0].to(self._device), wanted.to(self._device), points.to(self._device))
         self._optimizer.zero_grad(set_to_none=True)
         found.backward()
         nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
@@ -179,10 +179,10 @@ class _Learner:
         with torch.inference_mode():
             for part in np.array_split(np.arange(len(held)), math.ceil(len(held) / 64)):
                 wanted = self._held.wanted(held.frames[part], part)
-                logits = self.network(held.frames[part, 0].to(self._device), wanted.to(self._device))
+                now, wanted = held.frames[part, 0].to(self._device), wanted.to(self._device)
                 points = held.points[part]
-                losses.append(float(heatmaps.loss(logits, torch.from_numpy(points).to(self._device), self.arms)))
-                picks, _ = heatmaps.read(logits, held.masks[part], self.arms)
+                losses.append(float(self.network.loss(now, wanted, torch.from_numpy(points).to(self._device))))
+                picks, _ = self.network.read(self.network(now, wanted), held.masks[part])
                 errors.append(heatmaps.pick_error(picks, points))
         return {"held_out_loss": float(np.mean(losses)), "pick_error_px": float(np.concatenate(errors).mean())}
 

@@ -11,6 +11,7 @@ from torch import Tensor, nn
 
 from polyfold_baselines.demos.window import SIDE
 from polyfold_baselines.learning import nodes, sentences
+from polyfold_baselines.learning.network import Network
 
 PATCH = 8
 GRID = SIDE // PATCH
@@ -19,7 +20,7 @@ NODES = 100
 MAP = SIDE // 2
 
 
-class LanguageGraph(nn.Module):
+class LanguageGraph(Network):
     """The cloth and a sentence to heatmaps of picks and places.
 
     Args:
@@ -31,6 +32,7 @@ class LanguageGraph(nn.Module):
 
     def __init__(self, arms: int, width: int = 192, depth: int = 4, heads: int = 4) -> None:
         super().__init__()
+        self.arms = arms
         self.stem = nn.Sequential(nn.Conv2d(CHANNELS, 16, 3, padding=1), nn.GELU(), nn.Conv2d(16, 32, 2, 2), nn.GELU())
         self.embed = nn.Conv2d(32, width, PATCH // 2, PATCH // 2)
         self.place = nn.Parameter(torch.zeros(1, GRID * GRID, width))

@@ -10,13 +10,14 @@ import torch
 from torch import Tensor, nn
 
 from polyfold_baselines.demos.window import SIDE
+from polyfold_baselines.learning.network import Network
 
 PATCH = 8
 GRID = SIDE // PATCH
 CHANNELS = 2
 
 
-class SpaceTime(nn.Module):
+class SpaceTime(Network):
     """Two frames to heatmaps of picks and places.
 
     Args:
@@ -28,6 +29,7 @@ class SpaceTime(nn.Module):
 
     def __init__(self, arms: int, width: int = 128, depth: int = 4, heads: int = 4) -> None:
         super().__init__()
+        self.arms = arms
         self.stem = nn.Sequential(nn.Conv2d(CHANNELS, 16, 3, padding=1), nn.GELU(), nn.Conv2d(16, 32, 4, 4), nn.GELU())
         self.embed = nn.Conv2d(32, width, 2, 2)
         self.place = nn.Parameter(torch.zeros(1, 1, GRID * GRID, width))

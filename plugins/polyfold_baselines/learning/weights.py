@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from torch import Tensor, nn
+from torch import Tensor
 
 from polyfold.errors import ConfigError
+from polyfold_baselines.learning.network import Network
 
 SCHEMA = "polyfold-baseline-1"
 
@@ -27,7 +28,7 @@ class Weights:
         measured: on garments held out.
     """
 
-    network: nn.Module
+    network: Network
     config: Mapping[str, Any]
     minutes: float
     measured: Mapping[str, float]
@@ -47,7 +48,7 @@ def save(path: Path, weights: Weights) -> None:
     part.replace(path)
 
 
-def load(path: Path, row: str, build: Callable[[Mapping[str, Any]], nn.Module]) -> Weights:
+def load(path: Path, row: str, build: Callable[[Mapping[str, Any]], Network]) -> Weights:
     """Read the weights of a row.
 
     Args:
