@@ -9,6 +9,7 @@ import pytest
 
 from docs.making import command_line, kinds, modules, results, studies
 from docs.making.components import bundled
+from polyfold import plugins
 from polyfold.api._describe import about
 from polyfold.cli import _parser
 from polyfold.cli._boundary import answer
@@ -87,6 +88,7 @@ def test_every_recorded_table_is_a_page():
 def test_examples_run(page, monkeypatch):
     monkeypatch.chdir(ROOT)  # where the sample outlines are
     names: dict = {}
+    before = plugins.by_hand()
     try:
         for block in re.findall(r"^( *)```python\n(.*?)^ *```", page.read_text("utf-8"), re.M | re.S):
             indent, source = block
@@ -95,6 +97,9 @@ def test_examples_run(page, monkeypatch):
     finally:
         if "playground" in names:
             names["playground"].close()
+        for kind, name in plugins.by_hand():
+            if (kind, name) not in before:
+                plugins.unregister(kind, name)
 
 
 @pytest.mark.parametrize("page", TOLD, ids=id_of)
