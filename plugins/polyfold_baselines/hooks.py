@@ -3,7 +3,7 @@
 from polyfold.plugins.hookspecs import hookimpl
 
 TORCH = ("polyfold[torch]",)
-SENTENCES = ("polyfold[torch,baselines]",)
+BASELINES = ("polyfold[torch,baselines]",)
 
 
 @hookimpl
@@ -11,11 +11,12 @@ def register_agents(register):
     """Register the agents."""
     agents = "polyfold_baselines.agents"
     register("nearest-demo", f"{agents}.nearest:NearestDemo", "copies the closest demonstration")
+    register("ppo", f"{agents}.ppo:Ppo", "depth and particles to folds, learned by trying", BASELINES)
     register("ltf", f"{agents}.ltf:LearningToFold", "goal pictures to values of drags, from folds nobody meant", TORCH)
     register("wang", f"{agents}.wang:Wang", "search in a simulator for a pick at a corner of a simplified mesh")
     register("foldsformer", f"{agents}.foldsformer:Foldsformer", "goal pictures to heatmaps by attention", TORCH)
-    register("langdef", f"{agents}.langdef:LangDef", "a sentence, depth and a graph to picks at its nodes", SENTENCES)
-    register("bifold", f"{agents}.bifold:BiFold", "a sentence and the cloth to heatmaps", SENTENCES)
+    register("langdef", f"{agents}.langdef:LangDef", "a sentence, depth and a graph to picks at its nodes", BASELINES)
+    register("bifold", f"{agents}.bifold:BiFold", "a sentence and the cloth to heatmaps", BASELINES)
 
 
 @hookimpl

@@ -15,6 +15,7 @@ from polyfold_baselines.learning.fitting import FitConfig, fit
 from polyfold_baselines.learning.weights import load
 
 import polyfold
+from polyfold.api import attempt
 from polyfold.errors import ConfigError
 
 SMALL = {"width": 32, "depth": 2, "precision": "float32", "batch": 8}
@@ -76,7 +77,7 @@ def test_it_learns_which_drags_reached_which_goals_and_folds(dragged, tmp_path):
     assert losses[1] < losses[0] - 0.5
     experiment = polyfold.Experiment.of(agent={"name": "ltf", "weights": str(after)}, guidance="steps")
     cloth = polyfold.garment("square", seed=1001, edge_length=0.022)
-    episode = polyfold.api._fold.attempt("", cloth, 1001, experiment, task="square-corner-bottom_left")
+    episode = attempt("", cloth, 1001, experiment, task="square-corner-bottom_left")
     assert len(episode.steps) == 1
     assert episode.error is None
     assert len(episode.steps[0].action.picks) == 1

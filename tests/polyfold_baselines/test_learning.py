@@ -88,10 +88,11 @@ def test_it_learns_where_to_pick(overfitted):
 
 def test_it_folds_in_a_study_cell(overfitted):
     import polyfold
+    from polyfold.api import attempt
 
     experiment = polyfold.Experiment.of(agent={"name": "foldsformer", "weights": str(overfitted[1])})
     cloth = polyfold.garment("square", seed=1001, edge_length=0.022)
-    episode = polyfold.api._fold.attempt("", cloth, 1001, experiment, task="square-corner-bottom_left")
+    episode = attempt("", cloth, 1001, experiment, task="square-corner-bottom_left")
     assert len(episode.steps) == 1
     assert episode.error is None
     assert not episode.privileged

@@ -69,11 +69,12 @@ def test_another_sentence_about_the_same_cloth_is_another_fold(fitted, demonstra
 
 def test_it_folds_what_the_sentence_says(fitted):
     import polyfold
+    from polyfold.api import attempt
 
     row, weights = fitted
     experiment = polyfold.Experiment.of(agent={"name": row.row, "weights": str(weights)}, guidance="steps")
     cloth = polyfold.garment("square", seed=1001, edge_length=0.022)
-    episode = polyfold.api._fold.attempt("", cloth, 1001, experiment, task="square-corner-bottom_left")
+    episode = attempt("", cloth, 1001, experiment, task="square-corner-bottom_left")
     assert len(episode.steps) == 1
     assert episode.error is None
     assert episode.steps[0].subgoal.text.startswith("fold bottom left onto")

@@ -7,6 +7,7 @@ from polyfold_baselines.agents.wang import Wang
 
 import polyfold
 from polyfold import plugins
+from polyfold.api import attempt
 from polyfold.config import ComponentSpec
 
 COARSE = 0.022
@@ -38,7 +39,7 @@ def folded(task, seed, **params):
     kind = task.split("-")[0]
     experiment = polyfold.Experiment.of(agent={"name": "wang", "params": params}, guidance="steps")
     garment = polyfold.garment(kind, seed, edge_length=COARSE)
-    return polyfold.api._fold.attempt("", garment, seed, experiment, task=task)
+    return attempt("", garment, seed, experiment, task=task)
 
 
 def test_it_finds_the_corner_and_where_it_goes_and_is_marked_privileged():

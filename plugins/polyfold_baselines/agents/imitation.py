@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,7 @@ class Imitation(ABC):
     _window: Window
 
     def __init__(self, config: ImitationConfig, segmenter: Segmenter) -> None:
-        self._weights = _read(type(self), config.weights.resolve(), _version(config.weights))
+        self._weights = read_weights(type(self), config.weights)
         self._segmenter = segmenter
 
     @classmethod
@@ -127,13 +127,25 @@ class SentenceImitation(Imitation):
         return None if text is None else (encoded([text])[0], Subgoal(text))
 
 
-def _version(path: Path) -> tuple[int, int]:
-    return (path.stat().st_mtime_ns, path.stat().st_size) if path.is_file() else (0, 0)
+class Learned(Protocol):
+    """An agent's class whose network was trained by ``polyfold fit``."""
+
+    row: ClassVar[str]
+
+    @classmethod
+    def network(cls, config: Mapping[str, Any]) -> Any:
+        """The untrained network of what ``fit.json`` says."""
+        ...
+
+
+def read_weights(cls: type[Learned], path: Path) -> Weights:
+    """The weights of a file, read once until it changes. Raises ConfigError if they are not this row's."""
+    stamp = (path.stat().st_mtime_ns, path.stat().st_size) if path.is_file() else (0, 0)
+    return _read(cls, path.resolve(), stamp)
 
 
 @lru_cache(maxsize=4)
-def _read(cls: type[Imitation], path: Path, version: tuple[int, int]) -> Weights:
-    """The weights of a file, read once until it changes."""
+def _read(cls: type[Learned], path: Path, stamp: tuple[int, int]) -> Weights:
     from polyfold_baselines.learning.weights import load
 
     return load(path, cls.row, cls.network)

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from polyfold.errors import ConfigError, did_you_mean
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
 
 ROWS = {
     "foldsformer": "polyfold_baselines.agents.foldsformer:Foldsformer",
@@ -13,7 +17,9 @@ ROWS = {
     "ltf": "polyfold_baselines.agents.ltf:LearningToFold",
     "langdef": "polyfold_baselines.agents.langdef:LangDef",
 }
-"""Baselines that are trained so."""
+"""Baselines that learn from demonstrations or drags."""
+BY_TRYING = {"ppo": "polyfold_baselines.agents.ppo:Ppo"}
+"""Baselines that learn by trying folds."""
 
 
 class Fit:
@@ -22,10 +28,10 @@ class Fit:
     @staticmethod
     def configure(parser: argparse.ArgumentParser) -> None:
         """Add the options."""
-        parser.add_argument("row", metavar="BASELINE", help=f"one of {', '.join(ROWS)}")
-        parser.add_argument("--demos", type=Path, required=True, metavar="DIR", help="folder of polyfold demos")
+        parser.add_argument("row", metavar="BASELINE", help=f"one of {', '.join((*ROWS, *BY_TRYING))}")
+        parser.add_argument("--demos", type=Path, metavar="DIR", help="folder of polyfold demos; ppo needs none")
         parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder; resumed if it exists")
-        parser.add_argument("--passes", type="count", metavar="N", help="folds looked at (default: 100000)")
+        parser.add_argument("--passes", type="count", metavar="N", help="folds looked at (default: 100000; ppo: 20000)")
         parser.add_argument("--width", type="count", metavar="N", help="of the network (default: 128)")
         parser.add_argument("--depth", type="count", metavar="N", help="of the network (default: 4)")
         parser.add_argument("--seed", type="seed", metavar="N", help="of weights and order (default: 0)")
@@ -34,23 +40,53 @@ class Fit:
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Train what is missing and say how well it picks."""
-        from importlib import import_module
-
-        from pydantic import ValidationError
-
-        from polyfold.errors import validation_problem
-        from polyfold_baselines.learning.fitting import FitConfig, fit
-
-        if arguments.row not in ROWS:
-            raise ConfigError(f"no baseline is called {arguments.row!r}; {did_you_mean(arguments.row, ROWS)}")
-        module, _, name = ROWS[arguments.row].partition(":")
-        cls = getattr(import_module(module), name)
-        given = {name: getattr(arguments, name) for name in ("passes", "width", "depth", "seed")}
-        chosen = {name: value for name, value in given.items() if value is not None}
-        try:
-            config = FitConfig(row=arguments.row, demos=str(arguments.demos), **chosen)
-        except ValidationError as error:
-            raise ConfigError(validation_problem(error, FitConfig.model_fields)) from error
-        weights = fit(config, cls, arguments.out, arguments.device)
+        if arguments.row not in (*ROWS, *BY_TRYING):
+            hint = did_you_mean(arguments.row, (*ROWS, *BY_TRYING))
+            raise ConfigError(f"no baseline is called {arguments.row!r}; {hint}")
+        if arguments.row in BY_TRYING:
+            weights = _tried(arguments)
+        elif arguments.demos is None:
+            raise ConfigError(f"{arguments.row} learns from demonstrations; give their folder with --demos")
+        else:
+            weights = _fitted(arguments)
         print(f"weights: {weights}")
         return 0
+
+
+def _fitted(arguments: argparse.Namespace) -> Path:
+    from importlib import import_module
+
+    from polyfold_baselines.learning.fitting import FitConfig, fit
+
+    module, _, name = ROWS[arguments.row].partition(":")
+    chosen = _chosen(arguments, "passes", "width", "depth", "seed")
+    config = _valid(FitConfig, row=arguments.row, demos=str(arguments.demos), **chosen)
+    return fit(config, getattr(import_module(module), name), arguments.out, arguments.device)
+
+
+def _tried(arguments: argparse.Namespace) -> Path:
+    from polyfold_baselines.learning.reinforcing import TryConfig, reinforce
+
+    for name in ("demos", "width", "depth"):
+        if getattr(arguments, name) is not None:
+            raise ConfigError(f"{arguments.row} learns by trying and takes no --{name}; leave it out")
+    config = _valid(TryConfig, row=arguments.row, **_chosen(arguments, "passes", "seed"))
+    return reinforce(config, arguments.out, arguments.device)
+
+
+def _chosen(arguments: argparse.Namespace, *names: str) -> dict[str, Any]:
+    return {name: getattr(arguments, name) for name in names if getattr(arguments, name) is not None}
+
+
+Model = TypeVar("Model", bound="BaseModel")
+
+
+def _valid(model: type[Model], **settings: Any) -> Model:
+    from pydantic import ValidationError
+
+    from polyfold.errors import validation_problem
+
+    try:
+        return model(**settings)
+    except ValidationError as error:
+        raise ConfigError(validation_problem(error, model.model_fields)) from error

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from torch import Tensor
+from torch import Tensor, nn
 
 from polyfold.errors import ConfigError
-from polyfold_baselines.learning.network import Network
 
 SCHEMA = "polyfold-baseline-1"
 
@@ -22,13 +21,13 @@ class Weights:
     """A trained network.
 
     Attributes:
-        network: ready to predict.
+        network: ready to predict; a row's own class.
         config: what it was learned from and how, ``row``, ``arms`` and the hash of the demonstrations among it.
         minutes: that it took.
         measured: on garments held out.
     """
 
-    network: Network
+    network: Any
     config: Mapping[str, Any]
     minutes: float
     measured: Mapping[str, float]
@@ -38,7 +37,7 @@ def save(path: Path, weights: Weights) -> None:
     """Write them, whole or not at all."""
     from safetensors.torch import save_file
 
-    tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in weights.network.state_dict().items()}
+    tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in _once_each(weights.network).items()}
     told = {"schema": SCHEMA, "config": json.dumps(dict(weights.config)), "minutes": f"{weights.minutes:.1f}"}
     told["measured"] = json.dumps(dict(weights.measured))
     told["hash"] = _hash(tensors, told)
@@ -48,7 +47,7 @@ def save(path: Path, weights: Weights) -> None:
     part.replace(path)
 
 
-def load(path: Path, row: str, build: Callable[[Mapping[str, Any]], Network]) -> Weights:
+def load(path: Path, row: str, build: Callable[[Mapping[str, Any]], nn.Module]) -> Weights:
     """Read the weights of a row.
 
     Args:
@@ -75,8 +74,19 @@ def load(path: Path, row: str, build: Callable[[Mapping[str, Any]], Network]) ->
     if config["row"] != row:
         raise ConfigError(f"{path} holds weights of {config['row']}, not of {row}; give others")
     network = build(config)
-    network.load_state_dict(tensors)
+    if tensors.keys() != _once_each(network).keys():
+        raise ConfigError(f"{path} holds weights of another version of {row}; make it again")
+    network.load_state_dict(tensors, strict=False)
     return Weights(network.eval(), config, float(told["minutes"]), json.loads(told["measured"]))
+
+
+def _once_each(network: nn.Module) -> dict[str, Tensor]:
+    """A network's tensors; one that several parts share stands under its first name alone."""
+    found: dict[int, str] = {}
+    state = network.state_dict()
+    for name, tensor in state.items():
+        found.setdefault(tensor.data_ptr(), name)
+    return {name: state[name] for name in found.values()}
 
 
 def _hash(tensors: Mapping[str, Tensor], told: Mapping[str, str]) -> str:
