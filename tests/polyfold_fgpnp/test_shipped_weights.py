@@ -1,9 +1,10 @@
 """The weights that ship pick better than chance on t-shirts that nothing was trained on, and know where is where.
 
-``heldout.zip`` was collected with ``polyfold collect --seeds 1150-1159 --mix uniform=16 --folds 384``: from each of 24
-states sixteen first picks at random were folded. What a map says of these picks is compared with what came of them, so
-that nothing is simulated here. The map of ``csam+caso`` does not order them better than their distance from the line does
-(rank correlation 0.39 and 0.43, affordance 0.51), that of ``pair+caso`` does (0.55): see the recorded results.
+``heldout.zip`` was collected with ``polyfold collect --seeds 1150-1159 --mix uniform=16 --folds 384``: from each of
+24 states sixteen first picks at random were folded. What a map says of these picks is compared with what came of
+them, so that nothing is simulated here. The map of ``csam+caso`` does not order them better than their distance from
+the line does (rank correlation 0.39 and 0.43, affordance 0.51), that of ``pair+caso`` does (0.55): see the recorded
+results.
 """
 
 from pathlib import Path
