@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Mapping
@@ -16,10 +15,10 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 from torch import Tensor, nn
 
-from polyfold.errors import ConfigError
-from polyfold.logs import JsonLines, exclusive
+from polyfold.logs import JsonLines
 from polyfold_baselines.demos.store import Demos
-from polyfold_baselines.learning import heatmaps
+from polyfold_baselines.learning import checkpoints, heatmaps
+from polyfold_baselines.learning.checkpoints import training_in
 from polyfold_baselines.learning.examples import Examples, make_examples
 from polyfold_baselines.learning.network import Network
 from polyfold_baselines.learning.weights import Weights, save
@@ -85,18 +84,12 @@ def fit(config: FitConfig, row: type[Row], out: Path, device: str = "auto", prog
     """
     torch.manual_seed(config.seed)
     demos = Demos.read(config.demos)
-    note = json.dumps({**config.model_dump(exclude={"demos"}), "demos": demos.hash, "arms": demos.plan.arms}, indent=2)
-    out.mkdir(parents=True, exist_ok=True)
-    with exclusive(out):
-        held = out / "fit.json"
-        if held.exists() and held.read_text(encoding="utf-8") != note:
-            raise ConfigError(f"{out} holds another training; choose another folder")
-        held.write_text(note, encoding="utf-8")
-        learner = _Learner(config, row, json.loads(note), demos, device)
+    note = {**config.model_dump(exclude={"demos"}), "demos": demos.hash, "arms": demos.plan.arms}
+    with training_in(out, note):
+        learner = _Learner(config, row, note, demos, device)
         learner.resume(out / "checkpoint.safetensors")
         learner.run(JsonLines(out / "metrics.jsonl"), out / "checkpoint.safetensors", progress)
-        found = Weights(learner.network, json.loads(note), learner.progress.minutes, learner.last)
-        save(out / "weights.safetensors", found)
+        save(out / "weights.safetensors", Weights(learner.network, note, learner.progress.minutes, learner.last))
     return out / "weights.safetensors"
 
 
@@ -188,41 +181,25 @@ class _Learner:
 
     def resume(self, path: Path) -> None:
         """Go on where a checkpoint is, if there is one."""
-        if not path.exists():
+        if (found := checkpoints.read(path)) is None:
             return
-        from safetensors.torch import load_file
-
-        stored = load_file(path)
-        state = json.loads(bytes(stored.pop("state").numpy()).decode())
-        self.progress = _Progress(state["step"], state["minutes"])
-        self.last = state["last"]
-        parameters = dict(self.network.named_parameters())
+        stored, told = found
+        self.progress, self.last = _Progress(told["step"], told["minutes"]), told["last"]
         self.network.load_state_dict({name[2:]: value for name, value in stored.items() if name.startswith("n/")})
-        for name, parameter in parameters.items():
-            kept = {
-                key: stored[f"o/{name}/{key}"]
-                for key in ("exp_avg", "exp_avg_sq", "step")
-                if f"o/{name}/{key}" in stored
-            }
-            if kept:
+        for name, parameter in self.network.named_parameters():
+            keys = [key for key in ("exp_avg", "exp_avg_sq", "step") if f"o/{name}/{key}" in stored]
+            if keys:
                 self._optimizer.state[parameter] = {
-                    key: value if key == "step" else value.to(self._device) for key, value in kept.items()
+                    key: stored[f"o/{name}/{key}"].to("cpu" if key == "step" else self._device) for key in keys
                 }
 
     def _save(self, path: Path) -> None:
-        from safetensors.torch import save_file
-
         told = {"step": self.progress.step, "minutes": self.progress.minutes, "last": self.last}
-        tensors: dict[str, Tensor] = {
-            f"n/{name}": value.contiguous() for name, value in self.network.state_dict().items()
-        }
+        tensors: dict[str, Tensor] = {f"n/{name}": value for name, value in self.network.state_dict().items()}
         for name, parameter in self.network.named_parameters():
             for key, value in self._optimizer.state.get(parameter, {}).items():
-                tensors[f"o/{name}/{key}"] = torch.as_tensor(value).contiguous().clone()
-        tensors["state"] = torch.tensor(list(json.dumps(told).encode()), dtype=torch.uint8)
-        part = path.with_suffix(".part")
-        save_file(tensors, part)
-        part.replace(path)
+                tensors[f"o/{name}/{key}"] = torch.as_tensor(value)
+        checkpoints.write(path, tensors, told)
 
 
 def _rate(step: int, steps: int) -> float:

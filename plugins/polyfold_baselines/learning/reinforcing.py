@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Mapping
 from importlib.util import find_spec
@@ -15,8 +14,10 @@ from torch import Tensor
 
 from polyfold.errors import ConfigError
 from polyfold.evaluation import suite
-from polyfold.logs import JsonLines, exclusive
+from polyfold.logs import JsonLines
 from polyfold.tasks import Task
+from polyfold_baselines.learning import checkpoints
+from polyfold_baselines.learning.checkpoints import training_in
 from polyfold_baselines.learning.weights import Weights, save
 
 
@@ -60,15 +61,10 @@ def reinforce(config: TryConfig, out: Path, device: str = "auto", progress: bool
     """
     if find_spec("stable_baselines3") is None:
         raise ConfigError("learning by trying needs stable-baselines3; pip install 'polyfold[baselines]'")
-    note = json.dumps({**config.model_dump(), "arms": 2}, indent=2)
-    out.mkdir(parents=True, exist_ok=True)
-    with exclusive(out):
-        held = out / "fit.json"
-        if held.exists() and held.read_text(encoding="utf-8") != note:
-            raise ConfigError(f"{out} holds another training; choose another folder")
-        held.write_text(note, encoding="utf-8")
+    note = {**config.model_dump(), "arms": 2}
+    with training_in(out, note):
         minutes, last, policy = _tried(config, out, device, progress)
-        save(out / "weights.safetensors", Weights(policy, json.loads(note), minutes, last))
+        save(out / "weights.safetensors", Weights(policy, note, minutes, last))
     return out / "weights.safetensors"
 
 
@@ -117,12 +113,9 @@ def _shape(log_std: float) -> dict[str, Any]:
 
 def _resumed(model: Any, path: Path) -> tuple[int, float, dict[str, float]]:
     """Folds done, minutes and the last measure of a checkpoint, which the model goes on from; nothing without one."""
-    from safetensors.torch import load_file
-
-    if not path.exists():
+    if (found := checkpoints.read(path)) is None:
         return 0, 0.0, {}
-    stored = load_file(path)
-    told = json.loads(bytes(stored.pop("state").numpy()).decode())
+    stored, told = found
     model.policy.load_state_dict({name[2:]: value for name, value in stored.items() if name.startswith("n/")})
     optimiser = model.policy.optimizer.state_dict()
     optimiser["state"] = {}
@@ -135,13 +128,7 @@ def _resumed(model: Any, path: Path) -> tuple[int, float, dict[str, float]]:
 
 
 def _save(model: Any, path: Path, told: Mapping[str, Any]) -> None:
-    from safetensors.torch import save_file
-
     tensors: dict[str, Tensor] = {f"n/{name}": value for name, value in model.policy.state_dict().items()}
     for index, state in model.policy.optimizer.state_dict()["state"].items():
         tensors |= {f"o/{index}/{key}": torch.as_tensor(value) for key, value in state.items()}
-    tensors = {name: value.detach().cpu().contiguous().clone() for name, value in tensors.items()}
-    tensors["state"] = torch.tensor(list(json.dumps(told).encode()), dtype=torch.uint8)
-    part = path.with_suffix(".part")
-    save_file(tensors, part)
-    part.replace(path)
+    checkpoints.write(path, tensors, told)
