@@ -203,6 +203,23 @@ def test_a_corner_goes_to_the_middle_or_to_the_opposite_corner(text, meant):
 @pytest.mark.parametrize(
     "text",
     [
+        "fold the cuffs to the shoulders",
+        "Bring both cuffs up to the armpits.",
+        "take the end of the left sleeve to the collar",
+    ],
+)
+def test_cuffs_at_the_shoulders_are_refused_and_not_taken_for_the_hem(text):
+    from polyfold_offline.cloth.garment import Garment
+    from polyfold_offline.reading.orders import program_of_order
+
+    assert [piece.operation for piece in program_of_order(text, Garment("longsleeve", "tshirt"))] == ["no"]
+    assert program_of_order(text, Garment("pants", "pants")) is None
+    assert program_of_order("fold the left sleeve in, cuff toward the hem", Garment("tshirt", "tshirt")) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
         "fold the trousers", "fold up the sleeve", "fold the towel", "fold the shirt in", "fold",
         "fold the left cuffs in by #1 cm", "turn up the sleeve hems by #1 cm", "fold the waistband down by #1 cm",
         "fold the left edge up by #1 cm",

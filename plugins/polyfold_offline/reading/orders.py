@@ -43,10 +43,14 @@ def program_of_order(sentence: str, garment: Garment) -> Program | None:
     Of the garment alone, *fold the shirt*, *fold it in half twice*; of a part and where it goes, *fold the bottom up*,
     *fold the left sleeve*; of a corner, *fold the top left corner to the middle*; of an edge and the opposite one,
     *fold the left edge onto the right edge*; of a strip, *turn up the hem by 4 cm*. They hold too few words for a
-    network to be sure of any: one name of a garment more or less decides.
+    network to be sure of any: one name of a garment more or less decides. Of cuffs at the shoulders, which no subgoal
+    can say, a refusal.
     """
     words = " ".join(sentence.split())
-    readers = (_program_of_garment, _program_of_part, _program_of_corner, _program_of_edges, _program_of_strip)
+    readers = (
+        _program_of_garment, _program_of_part, _program_of_corner, _program_of_edges, _program_of_strip,
+        _refusal_of_cuffs,
+    )  # fmt: skip
     return next((program for read in readers if (program := read(words, garment)) is not None), None)
 
 
@@ -94,6 +98,11 @@ def _program_of_corner(words: str, garment: Garment) -> Program | None:
     return (Piece("across", corner),) if other == OPPOSITE[corner] else None
 
 
+def _refusal_of_cuffs(words: str, garment: Garment) -> Program | None:
+    """No subgoal halves a sleeve; without this rule the network takes cuffs at the shoulders for the hem there."""
+    return (Piece("no", "unclear"),) if garment.family == "tshirt" and _OF_CUFFS.fullmatch(words) else None
+
+
 def _corner(words: str) -> str:
     """``upper-left`` to ``TL``."""
     said = set(re.split("[ -]", words.lower()))
@@ -137,6 +146,12 @@ _OF_CORNER = re.compile(
     r"(?:(?:in|inwards?|over|across|diagonally) )?(?:in)?(?:to|on|onto) the "
     rf"(?:(?P<middle>middle|cent(?:re|er))(?: of the (?:{'|'.join(_CLOTHS)}|square|rectangle|fabric))?"
     rf"|(?P<other>opposite|{_CORNER})(?: corner| one)?)(?:,? please)?[.!]?",
+    re.IGNORECASE,
+)
+_OF_CUFFS = re.compile(
+    r"(?:please,? )?(?:fold|bring|take|put|lay|turn) (?:back |up |in )?(?:both |the |each )*(?:left |right )?"
+    r"(?:cuffs?|sleeve ends?|ends? of (?:the |both |each )*(?:left |right )?sleeves?) .*"
+    r"\b(?:shoulders?|armpits?|collar|neck(?:line)?)\b.*",
     re.IGNORECASE,
 )
 _EDGES_BY_NAME = {name: edge for edge in EDGES for name in (edge, f"{edge} edge", f"{edge} side")}
