@@ -90,9 +90,9 @@ def garment(
     Args:
         kind: garment kind, for example ``tshirt``.
         seed: picks the instance when nothing else is given.
-        mask: PNG or bool array, shape (H, W), of a real garment.
-        outline: JSON file or array of pixels, shape (N, 2), of a real garment.
-        image: photo of a real garment on a table; the twin has its colour and lies as it lay.
+        mask: PNG or bool array, shape (H, W), of a real garment; its twin lies as it lay.
+        outline: JSON file or array of pixels, shape (N, 2), of a real garment, likewise.
+        image: photo of a real garment on a table; likewise, and its twin has its colour.
         mesh: OBJ file; ``keypoints`` must be given too.
         keypoints: JSON file, keypoint name -> vertex index of the mesh.
         size: longest side of the garment's bounding box [m]; by default typical of the kind, or what the seed draws.
@@ -141,10 +141,10 @@ def garment(
     ring, corners = _on_table(found.plane, found.outline, found.keypoints)
     pattern = pattern_of(kind)
     twin = twin_from_outline(ring, kind, corners, pattern, size or found.size, edge_length)
+    twin = replace(twin, fabric=cloth, angle_deg=angle_of(corners, pattern))
     if image is None:
-        return replace(twin, fabric=cloth)
-    colours, angle = colours_in(found.rgb, found.scene.mask), angle_of(corners, pattern)
-    return replace(twin, fabric=cloth, colours=colours, angle_deg=angle, photo=found.rgb)
+        return twin
+    return replace(twin, colours=colours_in(found.rgb, found.scene.mask), photo=found.rgb)
 
 
 def pattern_of(kind: str) -> Pattern:

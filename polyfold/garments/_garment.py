@@ -69,7 +69,7 @@ class Garment:
         fabric: what it is made of. Generators need not give one: :func:`polyfold.garment` and
             :func:`polyfold.plugins.generate_garment` put the chosen one in. Poplin until then.
         angle_deg: how far a simulator turns it when it lays it, counter-clockwise as the camera sees it; None where the
-            simulator draws that from its seed. The twin of a garment in a photograph lies as that did.
+            simulator draws that from its seed. The twin of a real garment lies as that did.
         photo: the photograph that it is the twin of, as the twin's camera would see it, uint8, shape (H, W, 3).
     """
 

@@ -9,9 +9,9 @@ from polyfold_baselines.demos.command import collect
 from polyfold_baselines.demos.drags import DIRECTIONS, EACH, LENGTHS, drags
 from polyfold_baselines.demos.store import Demos
 from polyfold_baselines.demos.window import SIDE
-from polyfold_baselines.learning.drag_values import DragValues
 from polyfold_baselines.learning.examples import make_examples
 from polyfold_baselines.learning.fitting import FitConfig, fit
+from polyfold_baselines.learning.networks.drag_values import DragValues
 from polyfold_baselines.learning.weights import load
 
 import polyfold

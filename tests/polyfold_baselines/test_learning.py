@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from polyfold_baselines.agents.foldsformer import Foldsformer
 from polyfold_baselines.demos.window import SIDE
-from polyfold_baselines.learning import fitting, heatmaps
+from polyfold_baselines.learning import fitting
 from polyfold_baselines.learning.fitting import FitConfig, fit
+from polyfold_baselines.learning.networks import heatmaps
 from polyfold_baselines.learning.weights import load
 
 from polyfold import plugins

@@ -2,7 +2,7 @@
 
 import pytest
 import torch
-from polyfold_baselines.learning.nodes import Graph, as_map, spread
+from polyfold_baselines.learning.networks.nodes import Graph, as_map, spread
 
 SIDE = 64
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from polyfold_baselines.agents.imitation import SentenceImitation
 
 if TYPE_CHECKING:
-    from polyfold_baselines.learning.network import Network
+    from polyfold_baselines.learning.networks.network import Network
 
 
 class BiFold(SentenceImitation):
@@ -28,6 +28,6 @@ class BiFold(SentenceImitation):
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Network:
         """The network."""
-        from polyfold_baselines.learning.conditioned import ConditionedUNet
+        from polyfold_baselines.learning.networks.conditioned import ConditionedUNet
 
         return ConditionedUNet(config["arms"], config["width"], config["depth"])

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from polyfold_baselines.agents.imitation import PictureImitation
 
 if TYPE_CHECKING:
-    from polyfold_baselines.learning.network import Network
+    from polyfold_baselines.learning.networks.network import Network
 
 
 class Foldsformer(PictureImitation):
@@ -30,6 +30,6 @@ class Foldsformer(PictureImitation):
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Network:
         """The network."""
-        from polyfold_baselines.learning.spacetime import SpaceTime
+        from polyfold_baselines.learning.networks.spacetime import SpaceTime
 
         return SpaceTime(config["arms"], config["width"], config["depth"])

@@ -20,7 +20,7 @@ from polyfold_baselines.demos.window import Window
 if TYPE_CHECKING:
     from torch import Tensor
 
-    from polyfold_baselines.learning.network import Network
+    from polyfold_baselines.learning.networks.network import Network
     from polyfold_baselines.learning.weights import Weights
 
 Floats = NDArray[np.float64]
@@ -73,8 +73,8 @@ class Imitation(ABC):
         """The next fold; None after the last."""
         import torch
 
-        from polyfold_baselines.learning import heatmaps
         from polyfold_baselines.learning.examples import as_frame
+        from polyfold_baselines.learning.networks import heatmaps
 
         if (wanted := self._wanted()) is None:
             return None

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from polyfold_baselines.agents.imitation import SentenceImitation
 
 if TYPE_CHECKING:
-    from polyfold_baselines.learning.network import Network
+    from polyfold_baselines.learning.networks.network import Network
 
 
 class LangDef(SentenceImitation):
@@ -31,6 +31,6 @@ class LangDef(SentenceImitation):
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Network:
         """The network."""
-        from polyfold_baselines.learning.language import LanguageGraph
+        from polyfold_baselines.learning.networks.language import LanguageGraph
 
         return LanguageGraph(config["arms"], config["width"], config["depth"])

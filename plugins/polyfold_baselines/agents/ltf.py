@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from polyfold_baselines.agents.imitation import PictureImitation
 
 if TYPE_CHECKING:
-    from polyfold_baselines.learning.network import Network
+    from polyfold_baselines.learning.networks.network import Network
 
 
 class LearningToFold(PictureImitation):
@@ -30,6 +30,6 @@ class LearningToFold(PictureImitation):
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Network:
         """The network."""
-        from polyfold_baselines.learning.drag_values import DragValues
+        from polyfold_baselines.learning.networks.drag_values import DragValues
 
         return DragValues(config["width"], config["depth"])

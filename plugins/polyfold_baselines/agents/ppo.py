@@ -43,13 +43,13 @@ class Ppo:
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Any:
         """The untrained policy of what ``fit.json`` says."""
-        from polyfold_baselines.learning.reinforcing import policy_of
+        from polyfold_baselines.learning.trying.reinforcing import policy_of
 
         return policy_of(config)
 
     def begin(self, goal: Goal, observation: Observation) -> Sequence[Subgoal]:
         """Look at the garment, and note where each fold should bring it."""
-        from polyfold_baselines.learning.trying import TaskView
+        from polyfold_baselines.learning.trying.environment import TaskView
 
         assert goal.ideals
         self._state = goal.state

@@ -65,7 +65,7 @@ def _fitted(arguments: argparse.Namespace) -> Path:
 
 
 def _tried(arguments: argparse.Namespace) -> Path:
-    from polyfold_baselines.learning.reinforcing import TryConfig, reinforce
+    from polyfold_baselines.learning.trying.reinforcing import TryConfig, reinforce
 
     for name in ("demos", "width", "depth"):
         if getattr(arguments, name) is not None:

@@ -12,7 +12,7 @@ from torch import Tensor
 from polyfold.errors import ConfigError
 from polyfold_baselines.demos.demonstrating import PER_METRE, unpacked
 from polyfold_baselines.demos.store import Demos
-from polyfold_baselines.learning.heatmaps import points_of
+from polyfold_baselines.learning.networks.heatmaps import points_of
 
 TALL = 0.005
 """Heights are given to networks as shares of this [m]: a few plies."""
@@ -26,7 +26,7 @@ class Examples:
 
     Attributes:
         frames: cloth before the fold, and goal, each as height and mask, float32, shape (N, 2, 2, SIDE, SIDE).
-        points: picks and places, see :func:`polyfold_baselines.learning.heatmaps.points_of`.
+        points: picks and places, see :func:`polyfold_baselines.learning.networks.heatmaps.points_of`.
         sentences: which sentence asks for each fold, an index into ``texts``, shape (N,).
         texts: the sentences.
     """

@@ -17,10 +17,11 @@ from torch import Tensor, nn
 
 from polyfold.logs import JsonLines
 from polyfold_baselines.demos.store import Demos
-from polyfold_baselines.learning import checkpoints, heatmaps
+from polyfold_baselines.learning import checkpoints
 from polyfold_baselines.learning.checkpoints import training_in
 from polyfold_baselines.learning.examples import Examples, make_examples
-from polyfold_baselines.learning.network import Network
+from polyfold_baselines.learning.networks import heatmaps
+from polyfold_baselines.learning.networks.network import Network
 from polyfold_baselines.learning.weights import Weights, save
 
 LOOK = 250

@@ -9,7 +9,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from polyfold_baselines.learning.network import Network
+from polyfold_baselines.learning.networks.network import Network
 from polyfold_baselines.learning.sentences import WIDTH, pooled
 
 CHANNELS = 2

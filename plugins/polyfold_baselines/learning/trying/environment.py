@@ -15,7 +15,7 @@ from polyfold.plugins.interfaces import Simulator
 from polyfold.tasks import Task, fold_lines
 from polyfold.types import Action, Observation, SimState
 from polyfold_baselines.demos.window import SIDE, Window
-from polyfold_baselines.learning.sampling import farthest_first
+from polyfold_baselines.learning.trying.sampling import farthest_first
 
 Floats = NDArray[np.float64]
 

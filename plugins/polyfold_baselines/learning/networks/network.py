@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from polyfold_baselines.learning import heatmaps
+from polyfold_baselines.learning.networks import heatmaps
 
 Floats = NDArray[np.float64]
 

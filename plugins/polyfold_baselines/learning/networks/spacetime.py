@@ -10,7 +10,7 @@ import torch
 from torch import Tensor, nn
 
 from polyfold_baselines.demos.window import SIDE
-from polyfold_baselines.learning.network import Network
+from polyfold_baselines.learning.networks.network import Network
 
 PATCH = 8
 GRID = SIDE // PATCH

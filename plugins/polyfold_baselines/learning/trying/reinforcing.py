@@ -42,7 +42,7 @@ def policy_of(config: Mapping[str, Any]) -> Any:
     """The untrained policy of what ``fit.json`` says: pictures by convolutions, particles beside them."""
     from stable_baselines3.ppo import MultiInputPolicy
 
-    from polyfold_baselines.learning.trying import ACTIONS, OBSERVATIONS
+    from polyfold_baselines.learning.trying.environment import ACTIONS, OBSERVATIONS
 
     return MultiInputPolicy(OBSERVATIONS, ACTIONS, lambda _: config["learning_rate"], **_shape(config["log_std"]))
 
@@ -96,7 +96,7 @@ def _model(config: TryConfig, device: str) -> tuple[Any, Any]:
     from stable_baselines3 import PPO
     from stable_baselines3.common.vec_env import DummyVecEnv, VecMonitor
 
-    from polyfold_baselines.learning.trying import FoldingTasks
+    from polyfold_baselines.learning.trying.environment import FoldingTasks
 
     tasks = [entry for entry in suite("polyfold70").tasks if isinstance(entry, Task) and entry.split == "seen"]
     env = VecMonitor(DummyVecEnv([lambda: FoldingTasks(tasks, config.seeds, config.edge_length, config.seed)]))

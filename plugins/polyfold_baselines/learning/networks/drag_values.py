@@ -14,7 +14,7 @@ from torch.nn import functional
 
 from polyfold_baselines.demos.drags import drags
 from polyfold_baselines.demos.window import SIDE
-from polyfold_baselines.learning.network import Floats, Network
+from polyfold_baselines.learning.networks.network import Floats, Network
 
 MAP = SIDE // 2
 CHANNELS = 2

@@ -10,8 +10,9 @@ import torch
 from torch import Tensor, nn
 
 from polyfold_baselines.demos.window import SIDE
-from polyfold_baselines.learning import nodes, sentences
-from polyfold_baselines.learning.network import Network
+from polyfold_baselines.learning import sentences
+from polyfold_baselines.learning.networks import nodes
+from polyfold_baselines.learning.networks.network import Network
 
 PATCH = 8
 GRID = SIDE // PATCH

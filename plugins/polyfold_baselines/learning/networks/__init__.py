@@ -1,0 +1,1 @@
+"""Networks from the cloth, and what is wanted of it, to picks and places."""

@@ -1,0 +1,1 @@
+"""Learning by trying folds: the environment, and the training in it."""
