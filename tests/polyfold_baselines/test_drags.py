@@ -64,7 +64,7 @@ def test_values_are_read_where_they_are_highest_on_the_cloth():
 
 def test_it_learns_which_drags_reached_which_goals_and_folds(dragged, tmp_path):
     """Of the few that it has seen: what it makes of others takes thousands."""
-    config = FitConfig(row="ltf", demos=str(dragged), passes=1600, learning_rate=3e-3, **SMALL)
+    config = FitConfig(row="ltf", demos=str(dragged), passes=720, learning_rate=3e-3, **SMALL)
     before = fit(config.model_copy(update={"passes": 8}), LearningToFold, tmp_path / "before", progress=False)
     after = fit(config, LearningToFold, tmp_path / "after", progress=False)
     learned, _ = make_examples(Demos.read(dragged), 1.0)

@@ -44,10 +44,10 @@ def test_what_is_told_last_holds_for_the_folds_that_are_left():
     assert (told.final, final.final) == (False, True)
 
 
-@pytest.fixture(scope="module", params=[BiFold, LangDef], ids=lambda row: row.row)
+@pytest.fixture(scope="module", params=[(BiFold, 640), (LangDef, 1200)], ids=["bifold", "langdef"])
 def fitted(request, demonstrated, tmp_path_factory):
-    row = request.param
-    config = FitConfig(row=row.row, demos=str(demonstrated), passes=1200, learning_rate=3e-3, **SMALL)
+    row, passes = request.param
+    config = FitConfig(row=row.row, demos=str(demonstrated), passes=passes, learning_rate=3e-3, **SMALL)
     return row, fit(config, row, tmp_path_factory.mktemp(row.row), progress=False)
 
 
