@@ -1,7 +1,7 @@
 """``python -m experiments.baselines``: everything that the rows of ``baselines.toml`` learn from, and their training.
 
-Each step is a command that goes on where it was killed; run the same again to go on. With ``--cuda`` the budgets grow
-to what the papers of the baselines had.
+Each step is a command that goes on where it was killed; run the same again to go on. With ``--cuda`` the budgets are
+twenty times as large.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=Path("runs/baselines"), help="default: runs/baselines")
     names = [step.name for step in STEPS]
     parser.add_argument("--only", nargs="+", choices=names, metavar="STEP", default=names, help="only these steps")
-    parser.add_argument("--cuda", action="store_true", help="budgets of the baselines' own papers, on a GPU")
+    parser.add_argument("--cuda", action="store_true", help="twenty times the budgets, on a GPU")
     parser.add_argument("--list", action="store_true", help="print the steps with their minutes, and run nothing")
     chosen = parser.parse_args(arguments)
     steps = [step for step in STEPS if step.name in chosen.only]

@@ -78,7 +78,7 @@ def test_particles_are_spread_and_stand_in_the_same_order_for_every_garment():
         seen = simulator.reset(plugins.generate_garment(kind, 0, COARSE), 0)
         mask = plugins.create("segmenters", "colour").segment(seen)
         state = simulator.state()
-        view = TaskView(mesh, state, Window.around(mask))
+        view = TaskView(mesh, Window.around(mask))
         shown = view.observation(seen, mask, state, state.positions)
         now, wanted = shown["particles"].reshape(2, PARTICLES, 2)
         assert (now == wanted).all()

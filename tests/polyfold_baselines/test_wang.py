@@ -28,9 +28,8 @@ def test_the_copy_lies_where_the_garment_lies_with_its_plies_and_openings(kind, 
     assert apart.max() < 0.03, "no farther than the next particle"
     assert abs(lies.camera.pixels_per_metre / flat.camera.pixels_per_metre - 1) < 0.05
     assert 4 <= len(copy.corners) <= 24
-    assert (
-        garment.mesh.seam.any() == (lies.positions[:, 2].max() > 1.5 * flat.positions[:, 2].min()) or kind == "square"
-    )
+    if kind != "square":
+        assert lies.positions[:, 2].max() > 1.5 * lies.positions[:, 2].min(), "two plies"
     simulator.close()
     copy.simulator.close()
 

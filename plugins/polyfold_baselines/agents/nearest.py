@@ -20,6 +20,7 @@ from polyfold.types import Action, Decision, Observation, Subgoal
 from polyfold_baselines.agents.goals import GoalPictures
 from polyfold_baselines.demos.demonstrating import unpacked
 from polyfold_baselines.demos.store import Demos
+from polyfold_baselines.demos.window import on_cloth
 
 Floats = NDArray[np.float64]
 
@@ -66,7 +67,7 @@ class NearestDemo:
         alike += _overlaps(wanted[1], unpacked(columns["goal_mask"][goals]))
         row = rows[int(np.argmax(alike))]
         arms = np.isfinite(columns["picks"][row][:, 0])
-        picks = _on_cloth(self._goals.window.to_pixels(columns["picks"][row][arms]), seen)
+        picks = on_cloth(self._goals.window.to_pixels(columns["picks"][row][arms]), seen)
         limit = [observation.camera.width - 1.0, observation.camera.height - 1.0]
         places = np.clip(self._goals.window.to_pixels(columns["places"][row][arms]), 0.0, limit)
         return Decision(Action(picks, places), Subgoal(str(columns["text"][row])))
@@ -89,9 +90,3 @@ def _overlaps(mask: NDArray[np.bool_], others: NDArray[np.bool_]) -> Floats:
     """Intersection over union of a mask, shape (S, S), with others, shape (N, S, S)."""
     both = (others & mask).sum((1, 2))
     return both / np.maximum((others | mask).sum((1, 2)), 1)
-
-
-def _on_cloth(points: Floats, mask: NDArray[np.bool_]) -> Floats:
-    """The nearest pixels of the cloth to points [px], shape (N, 2)."""
-    cloth = np.argwhere(mask)[:, ::-1].astype(float)
-    return np.array([cloth[np.argmin(np.hypot(*(cloth - point).T))] for point in points])

@@ -72,12 +72,16 @@ class Copy:
         return self.simulator.state().positions
 
 
-def pixels(camera: Camera, start: Floats, by: Floats, inside: float = 1.0) -> tuple[Floats, Floats]:
-    """Where a pick [m], shape (3,), and its place, moved by so much over the table, shape (2,), are in a picture."""
-    limit = np.array([camera.width, camera.height]) - 1.0 - inside
+def pixels(camera: Camera, start: Floats, by: Floats) -> tuple[Floats, Floats]:
+    """Where a pick [m], shape (3,), and its place, so far from it over the table [m], shape (2,), are in a picture.
+
+    Returns:
+        Pick and place [px], shape (1, 2) each; those outside are pulled to its border.
+    """
+    limit = np.array([camera.width, camera.height]) - 2.0
     pick = camera.to_pixels(start)
     place = camera.to_pixels(np.append(start[:2] + by, 0.0))
-    return np.clip(pick, inside, limit)[None], np.clip(place, inside, limit)[None]
+    return np.clip(pick, 1.0, limit)[None], np.clip(place, 1.0, limit)[None]
 
 
 def _outline(mesh: Mesh) -> Outline:
@@ -90,7 +94,7 @@ def _outline(mesh: Mesh) -> Outline:
     index = sorted({int(np.argmin(np.hypot(*(ring - corner).T))) for corner in kept})
     if mesh.layers == 1:
         return Outline(ring, {f"corner{k}": k for k in index})
-    sewn = _sewn(mesh)
+    sewn = mesh.seam[mesh.boundary]
     ends = {k for k in range(len(ring)) if sewn[k] and not (sewn[k - 1] and sewn[(k + 1) % len(ring)])}
     stops = sorted({*index, *ends})
     corners = {f"corner{k}": k for k in stops}
@@ -100,11 +104,6 @@ def _outline(mesh: Mesh) -> Outline:
         if not sewn[(first + 1) % len(ring)] and (first + 1) % len(ring) != last
     )
     return Outline(ring, corners, openings)
-
-
-def _sewn(mesh: Mesh) -> NDArray[np.bool_]:
-    """Which points of the boundary join both panels, shape (B,)."""
-    return mesh.seam[mesh.boundary]
 
 
 def _nearest(mesh: Mesh, coarse: Mesh) -> NDArray[np.int64]:

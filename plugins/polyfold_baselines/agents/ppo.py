@@ -54,7 +54,7 @@ class Ppo:
         assert goal.ideals
         self._state = goal.state
         window = Window.around(self._segmenter.segment(observation))
-        self._view = TaskView(goal.ideals[0].mesh, goal.state(), window)
+        self._view = TaskView(goal.ideals[0].mesh, window)
         self._ideals = InTurn([ideal.end.positions for ideal in goal.ideals], goal.fold_count)
         return ()
 

@@ -62,3 +62,9 @@ class Window:
             borderMode=cv2.BORDER_CONSTANT, borderValue=outside,
         )  # fmt: skip
         return np.asarray(seen, np.float32).reshape(SIDE, fine, SIDE, fine).mean((1, 3))
+
+
+def on_cloth(points: ArrayLike, mask: NDArray[np.bool_]) -> Floats:
+    """The nearest pixels of the cloth, bool, shape (H, W), to points of the camera's picture [px], shape (N, 2)."""
+    cloth = np.argwhere(mask)[:, ::-1].astype(float)
+    return np.array([cloth[np.argmin(np.hypot(*(cloth - point).T))] for point in np.asarray(points, float)])

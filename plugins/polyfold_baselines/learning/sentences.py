@@ -17,7 +17,7 @@ from polyfold.errors import ConfigError
 WIDTH = 384
 """Of a token's features."""
 MOST_TOKENS = 64
-"""What is longer loses its end; the longest sentence of a task's fold has 50."""
+"""What is longer loses its end; the longest sentence of a fold of the paper's tasks has 40."""
 
 
 def encoded(texts: Sequence[str]) -> Tensor:

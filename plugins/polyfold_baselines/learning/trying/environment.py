@@ -14,7 +14,8 @@ from polyfold.garments import Mesh
 from polyfold.plugins.interfaces import Simulator
 from polyfold.tasks import Task, fold_lines
 from polyfold.types import Action, Observation, SimState
-from polyfold_baselines.demos.window import SIDE, Window
+from polyfold_baselines.demos.window import SIDE, Window, on_cloth
+from polyfold_baselines.learning.examples import TALL
 from polyfold_baselines.learning.trying.sampling import farthest_first
 
 Floats = NDArray[np.float64]
@@ -22,8 +23,6 @@ Floats = NDArray[np.float64]
 PIXELS = 84
 PARTICLES = 100
 CHANNELS = 3
-TALL = 0.005
-"""Heights are given as shares of this [m]: a few plies."""
 GOOD = 0.6
 """A fold that takes away less of the distance to its goal ends an episode: what follows has no sense."""
 SMALLEST = 0.01
@@ -69,7 +68,7 @@ class FoldingTasks(gymnasium.Env):
         garment = plugins.generate_garment(task.garment, garment_seed, self._edge_length)
         self._seen = self._simulator.reset(garment, garment_seed)
         flat = self._simulator.state()
-        self._view = TaskView(garment.mesh, flat, Window.around(self._segmenter.segment(self._seen)))
+        self._view = TaskView(garment.mesh, Window.around(self._segmenter.segment(self._seen)))
         self._goals = goals_of(task, flat)
         self._step = 0
         return self._observation(), {"task": task.id}
@@ -104,11 +103,10 @@ class TaskView:
 
     Args:
         mesh: of the garment.
-        flat: how it first lay.
         window: through which it is seen.
     """
 
-    def __init__(self, mesh: Mesh, flat: SimState, window: Window) -> None:
+    def __init__(self, mesh: Mesh, window: Window) -> None:
         self._mesh, self.window = mesh, window
         chosen = farthest_first(mesh.vertices, PARTICLES)
         rest = mesh.vertices[chosen]
@@ -132,9 +130,7 @@ class TaskView:
         """What eight numbers mean: picks go to the nearest cloth, bool, shape (H, W)."""
         points = self.window.to_pixels((numbers.reshape(4, 2) + 1) / 2 * (SIDE - 1))
         limit = np.array([seen.camera.width, seen.camera.height]) - 1.0
-        cloth = np.argwhere(mask)[:, ::-1].astype(float)
-        picks = np.array([cloth[np.argmin(np.hypot(*(cloth - pick).T))] for pick in points[::2]])
-        return Action(picks, np.clip(points[1::2], 0.0, limit))
+        return Action(on_cloth(points[::2], mask), np.clip(points[1::2], 0.0, limit))
 
     def _in_view(self, seen: Observation, positions: Floats) -> Floats:
         return self.window.to_view(seen.camera.to_pixels(positions)) / (SIDE - 1) * 2 - 1
