@@ -144,8 +144,30 @@ def _disturbances(results: Results) -> Sequence[Section]:
 
 
 def _policies(results: Results) -> Sequence[Section]:
-    others = [name for name in results.study.variants if name != "affordance-pair"]
-    return [*_table(results), *_pairs(*(("affordance-pair", other) for other in others))(results)]
+    default = "affordance-pair"
+    others = [name for name in results.study.variants if name != default]
+    return [
+        *_table(results),
+        ("What picks decide:", _within_reach(results, default)),
+        *_pairs(*((default, other) for other in others))(results),
+    ]
+
+
+def _within_reach(results: Results, default: str) -> str:
+    """How much better than a variant the best pick of all variants could be: as good as any, chosen after the fact."""
+    lines = ["| kind | n | strict % | strict % of the best variant, each time | missed by every variant |", "|" + "---|" * 5]
+    for kind in [*results.kinds(), None]:
+        good: dict[str, list[bool]] = {}
+        for name in results.study.variants:
+            for record in results.of(name, kind):
+                good.setdefault(record.key.partition("/")[2], []).append(record.success["strict"])
+        own = [record.success["strict"] for record in results.of(default, kind)]
+        best = [any(found) for found in good.values()]
+        lines.append(
+            f"| {kind or 'all'} | {len(own)} | {100 * sum(own) / len(own):.1f} | {100 * sum(best) / len(best):.1f} "
+            f"| {len(best) - sum(best)} of the {len(own) - sum(own)} that {default} misses |"
+        )
+    return "\n".join(lines)
 
 
 STUDIES = (
