@@ -54,6 +54,7 @@ class FaultySimulator:
         Agents that act alike meet the same faults, and different tasks on one garment meet different ones.
         """
         self._history = zlib.crc32(str(seed).encode())
+        self._histories: dict[int, int] = {}
         self._grasped = self._short = self._slipped = None
         return self._inner.reset(garment, seed)
 
@@ -99,16 +100,23 @@ class FaultySimulator:
 
     def state(self) -> SimState:
         """Privileged state."""
-        return replace(self._inner.state(), grasped=self._grasped, short=self._short, slipped=self._slipped)
+        state = replace(self._inner.state(), grasped=self._grasped, short=self._short, slipped=self._slipped)
+        self._histories[_mark(state)] = self._history
+        return state
 
     def restore(self, state: SimState) -> None:
-        """Return to a state of this garment."""
+        """Return to a state of this garment; what is done from there meets the faults that it met before."""
+        self._history = self._histories.get(_mark(state), self._history)
         self._grasped, self._short, self._slipped = state.grasped, state.short, state.slipped
         self._inner.restore(state)
 
     def close(self) -> None:
         """Release what is held."""
         self._inner.close()
+
+
+def _mark(state: SimState) -> int:
+    return zlib.crc32(state.positions.tobytes())
 
 
 _Told = TypeVar("_Told", int, float)

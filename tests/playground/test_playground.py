@@ -57,6 +57,22 @@ def test_a_fold_after_an_undo_is_what_it_would_have_been_without(playground):
     np.testing.assert_array_equal(playground.fold(ACROSS)[0].after.positions, expected)
 
 
+def test_a_fold_that_is_taken_back_and_done_again_meets_the_same_faults():
+    faults = {"name": "faulty", "params": {"displace": 0.5, "slip": 0.5}}
+    with polyfold.play(square(), simulator=faults) as playground:
+        playground.fold(ACROSS)
+        middle = playground.state.positions
+        playground.fold(ACROSS)
+        first = playground.state.positions
+        for moves in (1, 2):
+            for _ in range(moves):
+                playground.undo()
+            for _ in range(moves):
+                playground.fold(ACROSS)
+            np.testing.assert_array_equal(playground.state.positions, first)
+        assert np.abs(first - middle).max() > 0.001
+
+
 def test_a_sentence_goes_on_from_what_was_folded_by_hand(playground):
     corner = playground.scene.model.points()["bottom_left"]
     playground.fold(polyfold.Action([corner], [np.add(corner, [60.0, -60.0])]))
