@@ -18,7 +18,7 @@ PROMISES = {
     "simulator": ("interfaces.Simulator", "interfaces.RecordsMotion", "interfaces.HasReferenceConfig"),
     "camera": ("hardware.DepthCamera",),
     "robot": ("hardware.Robot",),
-    "segmenter": ("interfaces.Segmenter",),
+    "segmenter": ("interfaces.Segmenter", "interfaces.HasReferenceConfig"),
     "grounding": ("interfaces.Grounding",),
     "planner": ("interfaces.Planner", "interfaces.StepwisePlanner", "interfaces.Conversation"),
     "policy": ("interfaces.Policy", "interfaces.ValuesPicks"),

@@ -13,6 +13,7 @@ from polyfold import plugins
 from polyfold.errors import GroundingError
 from polyfold.evaluation._criteria import criteria, succeeded
 from polyfold.evaluation._suites import find_task, known_tasks
+from polyfold.evaluation._undisturbed import undisturbed
 from polyfold.geometry import FoldLine, iou
 from polyfold.tasks import Task, fold_lines
 from polyfold.tasks._ideal import fidelity, fold_ideally
@@ -29,7 +30,10 @@ QUALITY = "quality"
 
 
 def final_mask(episode: Episode) -> NDArray[np.bool_]:
-    """The cloth in the last picture, bool, shape (H, W); empty if it was carried out of sight."""
+    """The cloth in the last picture, bool, shape (H, W); empty if it was carried out of sight.
+
+    It is segmented as well as can be: noise that was injected into masks to fold by is none of the result's.
+    """
     return _cloth(episode, episode.final)
 
 
@@ -39,8 +43,9 @@ def first_mask(episode: Episode) -> NDArray[np.bool_]:
 
 
 def _cloth(episode: Episode, seen: Observation) -> NDArray[np.bool_]:
+    chosen = undisturbed("segmenters", episode.experiment.segmenter)
     try:
-        return plugins.create_chosen(episode.experiment, "segmenter").segment(seen)
+        return plugins.create("segmenters", chosen.name, chosen.params).segment(seen)
     except GroundingError:
         return np.zeros(seen.depth.shape, bool)
 

@@ -13,15 +13,14 @@ from pathlib import Path
 
 import numpy as np
 
-from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment
 from polyfold.evaluation._judging import final_mask
+from polyfold.evaluation._undisturbed import undisturbed
 from polyfold.garments import Garment, Mesh
 from polyfold.geometry import Camera
 from polyfold.logs._dependencies import fingerprint
 from polyfold.logs._disk.files import write_atomically
 from polyfold.logs._host import processor
-from polyfold.plugins.interfaces import HasReferenceConfig
 from polyfold.rollout import run_episode
 from polyfold.tasks import Task, fold_lines
 from polyfold.tasks._ideal import fold_step_by_step
@@ -64,7 +63,7 @@ def reference_for(task: Task, garment: Garment, seed: int, simulator: ComponentS
         simulator: the simulator and its parameters; one that injects faults or noise says which to use
             instead (:class:`polyfold.plugins.interfaces.HasReferenceConfig`).
     """
-    experiment = Experiment.of(agent="oracle", simulator=_reference_simulator(simulator))
+    experiment = Experiment.of(agent="oracle", simulator=undisturbed("simulators", simulator))
     path = cache_folder() / "references" / f"{_key(task, garment, seed, experiment)}.npz"
     if (kept := _kept(path, garment.mesh)) is not None:
         return kept
@@ -89,17 +88,6 @@ def ideal_reference(task: Task, garment: Garment, flat: SimState) -> Reference:
     lines = fold_lines(task, flat.keypoint_pixels())
     folded = [ideal.outcome(flat, garment.mesh) for ideal in fold_step_by_step(flat, garment, lines)]
     return Reference(folded[-1], tuple(outcome.end for outcome in folded))
-
-
-def _reference_simulator(simulator: ComponentSpec) -> ComponentSpec:
-    """The simulator that references are made in: without the faults that one may inject."""
-    cls, config = plugins.configured("simulators", simulator.name, simulator.params)
-    if not isinstance(cls, HasReferenceConfig):
-        return simulator
-    name, params = cls.reference_config(config)
-    found = ComponentSpec(name=name, params=dict(params))
-    # What is inside another simulator may have a reference of its own.
-    return found if name == simulator.name else _reference_simulator(found)
 
 
 def _key(task: Task, garment: Garment, seed: int, experiment: Experiment) -> str:

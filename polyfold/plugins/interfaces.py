@@ -113,11 +113,11 @@ class RecordsMotion(Protocol):
 
 @runtime_checkable
 class HasReferenceConfig(Protocol):
-    """A simulator that injects faults or noise, which references must not have."""
+    """A simulator or segmenter that injects faults or noise, which results are not measured with."""
 
     @classmethod
     def reference_config(cls, config: Any) -> tuple[str, Mapping[str, Any]]:
-        """Name and parameters of the simulator in which the references of this one are made."""
+        """Name and parameters of the one without: references are made in it, and the end is segmented by it."""
         ...
 
 

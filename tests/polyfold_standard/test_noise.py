@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
+import polyfold
 from polyfold import plugins
+from polyfold.api import attempt
 from polyfold.errors import GroundingError
 from polyfold.geometry import Camera
 from polyfold.types import Observation
@@ -57,3 +59,22 @@ def test_more_noise_than_cloth_is_refused():
     ribbon[195:205, 100:300] = True
     with pytest.raises(GroundingError, match="less noise"):
         segmented(ribbon, tears=50, tear_px=50.0)
+
+
+def test_what_was_folded_by_a_spoilt_mask_is_measured_by_a_true_one():
+    cloth = polyfold.garment("square", seed=3, edge_length=0.03)
+    spoilt = {"name": "noisy", "params": {"coarse_px": 40}}
+    experiment = polyfold.Experiment.of(agent="oracle", segmenter=spoilt)
+    episode = attempt("", cloth, 3, experiment, task="square-corner-top_left")
+    assert episode.fidelity.iou > 0.95
+    assert episode.fidelity.iou > iou_of_squares(episode) + 0.02
+
+
+def iou_of_squares(episode):
+    from polyfold.geometry import iou
+
+    true, spoilt = (
+        plugins.create("segmenters", name, config).segment(episode.final)
+        for name, config in (("colour", {}), ("noisy", {"coarse_px": 40}))
+    )
+    return iou(true, spoilt)

@@ -36,6 +36,11 @@ class NoisySegmenter:
         tear_px: float = Field(default=8.0, gt=0, le=50, description="their radius [px]")
         coarse_px: int = Field(default=1, ge=1, le=50, description="side of the squares that the mask is made of [px]")
 
+    @classmethod
+    def reference_config(cls, config: Config) -> tuple[str, dict[str, Any]]:
+        """The segmenter that results are measured by: the one whose masks are spoilt here."""
+        return config.inner, dict(config.inner_params)
+
     def __init__(self, config: Config | None = None) -> None:
         self._config = config or self.Config()
         self._inner: Segmenter = create("segmenters", self._config.inner, self._config.inner_params)
