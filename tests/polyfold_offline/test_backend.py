@@ -102,6 +102,29 @@ def test_what_is_no_fold_of_this_garment_is_refused(planner, llm, kind, text):
         plan_ideally(text, laid_garment(kind, 2001), planner, llm)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "你好", "把布对折", "こんにちは", "🙂", "сложи пополам", "plie la serviette en deux", "plie le t-shirt en deux",
+        "dobla la toalla por la mitad", "dobla en dos", "falte das Handtuch in der Mitte", "piega il telo a metà",
+        "vouw de handdoek dubbel", "pliez le coin en bas à gauche vers le centre", "wuzzle flimpy gribble",
+    ],
+)  # fmt: skip
+def test_what_is_no_english_is_refused_and_said_to_be_none(planner, llm, text):
+    with pytest.raises(RefusedError, match="English"):
+        plan_ideally(text, laid_garment("square", 2001), planner, llm)
+
+
+@pytest.mark.parametrize(
+    "text", ["L⅓ in, then R⅓ over", "TL -> ctr", "fold it à la mode in half", "1/2", "hlf fold pls"]
+)
+def test_what_is_short_or_odd_is_still_taken_for_english(text):
+    from polyfold_offline.reading.english import is_english
+    from polyfold_offline.reading.pieces import Pieces
+
+    assert is_english(text, Pieces.load(FOLDER).words)
+
+
 def test_doubt_is_said_with_the_part_in_doubt_and_what_can_be_done():
     from polyfold_offline.cloth.garment import Garment, NotUnderstoodError
     from polyfold_offline.reading.reader import Reader

@@ -26,6 +26,9 @@ class Pieces:
     """Sentence to word pieces, by MiniLM's vocabulary (uncased WordPiece, arXiv:1810.04805).
 
     Ours, since the package ``tokenizers`` brings 40 MB and a network client with it; a test compares the two.
+
+    Attributes:
+        words: of folding, in English.
     """
 
     def __init__(self, vocabulary: Mapping[str, int], words: dict[str, int]) -> None:
@@ -33,6 +36,7 @@ class Pieces:
         vocabulary: piece -> number, of the encoder; pieces within a word begin with ``##``.
         words: words of folding -> how often they are said, which misspelt ones are brought back to.
         """
+        self.words = frozenset(words)
         self._numbers = vocabulary
         self._corrector = Corrector(frozenset(word for word in vocabulary if word.isalpha()), words)
 

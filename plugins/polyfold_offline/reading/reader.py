@@ -15,6 +15,7 @@ from polyfold_offline.meaning.allowing import LEFT_OPEN, allowance
 from polyfold_offline.meaning.folding import REASONS, Folding, folds_of
 from polyfold_offline.meaning.program import Piece, Program
 from polyfold_offline.reading.decoding import Candidate, likeliest
+from polyfold_offline.reading.english import is_english
 from polyfold_offline.reading.network import Network
 from polyfold_offline.reading.orders import fold_of_subgoal, program_of_order
 from polyfold_offline.reading.pieces import Pieces
@@ -84,6 +85,8 @@ class Reader:
 
     def readings(self, sentence: str, garment: Garment) -> list[Reading]:
         """The ways to understand a sentence, the likeliest first; those with the same folds are one."""
+        if not is_english(sentence, self._pieces.words):
+            return [Reading((Piece("no", "nonsense"),), None, _ENGLISH_ALONE, 1.0)]
         if _OTHER_WORK.match(sentence):
             return [Reading((Piece("no", "action"),), None, REASONS["action"], 1.0)]
         if _TAKEN_BACK.search(sentence):
@@ -116,6 +119,8 @@ class Reader:
         doubts = [self.readings(clause, garment)[0].sure for clause in clauses]
         return clauses[doubts.index(min(doubts))].strip()
 
+
+_ENGLISH_ALONE = "I read English alone, and find none here; say what to fold in plain words, or choose a language model"
 
 _OTHER_WORK = re.compile(
     r"\W*(?:please |now |just )*(?:unfold|unroll|unwrap|iron|wash|rinse|soak|wring|starch|bleach|dye|sew|stitch|mend"
