@@ -19,12 +19,15 @@ SHOWN = (
 
 
 def register() -> None:
-    """Have IPython show these values as pictures; nothing where it does not run."""
+    """Have IPython show these values as pictures, and figures too; nothing where it does not run."""
     ipython = sys.modules.get("IPython")
     shell = None if ipython is None else ipython.get_ipython()
     if shell is not None:
+        pictures = shell.display_formatter.formatters["image/png"]
         for module, name in SHOWN:
-            shell.display_formatter.formatters["image/png"].for_type_by_name(module, name, _png)
+            pictures.for_type_by_name(module, name, _png)
+        # IPython itself shows a figure as text until %matplotlib was called.
+        pictures.for_type_by_name("matplotlib.figure", "Figure", _figure_png)
 
 
 def _png(value: Any) -> bytes:
@@ -32,3 +35,11 @@ def _png(value: Any) -> bytes:
     from polyfold.viz._values import picture_of
 
     return png(picture_of(value))
+
+
+def _figure_png(figure: Any) -> bytes:
+    from io import BytesIO
+
+    content = BytesIO()
+    figure.savefig(content, format="png", dpi=120, bbox_inches="tight")
+    return content.getvalue()

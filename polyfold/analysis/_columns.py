@@ -53,7 +53,13 @@ class Column:
         if self.is_success:
             pair = ([None if value is None else value > 0 for value in values] for values in (first, second))
             return share_difference(*pair, *shared(ours))
-        return difference(first, second, *shared(ours))
+        found = difference(first, second, *shared(ours))
+        if self.most is None or not math.isfinite(found.high - found.low):
+            return found
+        # Values from 0, as those with a bound are, to the largest: no two of them are farther apart.
+        negative = any(value is not None and value < 0 for value in (*first, *second))
+        widest = 2 * self.most if negative else self.most
+        return replace(found, low=max(found.low, -widest), high=min(found.high, widest))
 
 
 def shared(records: Sequence[StudyEpisodeRecord]) -> tuple[Labels, Labels]:
@@ -64,7 +70,7 @@ def shared(records: Sequence[StudyEpisodeRecord]) -> tuple[Labels, Labels]:
 
 
 def columns_of(run: RunRecord) -> list[Column]:
-    """All columns of a run: its metrics, then success by its own criterion, then by the others."""
+    """All columns of a run: success by its own criterion, then by the others, then its metrics."""
     metrics = [
         Column(metric.heading, (name, metric.label), metric.digits, False, _metric(name), _most(name, metric))
         for name, metric in run.metrics.items()
@@ -72,7 +78,7 @@ def columns_of(run: RunRecord) -> list[Column]:
     own, *others = run.criteria
     success = [Column("success %", ("success", own, f"{own} %"), 1, True, _success(own))]
     success += [Column(f"{name} %", (name,), 1, True, _success(name)) for name in others]
-    return [*metrics, *success]
+    return [*success, *metrics]
 
 
 def column_of(run: RunRecord, name: str) -> Column:

@@ -57,9 +57,21 @@ def remarks(results: Results) -> str:
         note += " Goals: the nearest task that each accepts; success includes those that are done by their own bounds."
     if any(record.privileged for record in results.records):
         note += " * privileged: sees more than the camera."
+    note += _refusals(results)
     for change in results.run.changes:
         note += f" Went on after {change.episodes} episodes with a change: {'; '.join(change.differences)}."
     return note
+
+
+def _refusals(results: Results) -> str:
+    """How many sentences each variant refused: their cloth lies as it lay, whatever the table's millimetres look like."""
+    told = []
+    for variant in results.study.variants:
+        records = results.of(variant)
+        refused = sum(record.failure is not None and record.failure.stage == "refused" for record in records)
+        if refused:
+            told.append(f"{refused} of {len(records)} by {variant}")
+    return f" Refused, and not folded any further: {', '.join(told)}." if told else ""
 
 
 def noise_floor(noise: Results) -> str:

@@ -15,7 +15,7 @@ _SORT = (
 )
 """What a heading does when it is clicked: rows by its column, up, then down."""
 
-_CELL = "white-space:nowrap;padding:3px 10px;text-align:"
+_CELL = "white-space:nowrap;padding:2px 8px;text-align:"
 
 
 @makes(Table, "rich")
@@ -41,4 +41,12 @@ def rich(table: Table) -> str:
 def _cell(cell: str | Figure, side: str) -> str:
     value = f' data-value="{cell.value.mean}"' if isinstance(cell, Figure) and cell.is_known else ""
     value = f' data-value="{cell}"' if isinstance(cell, str) and cell.isdigit() else value
-    return f'<td style="{_CELL}{side}"{value}>{escape(str(cell))}</td>'
+    return f'<td style="{_CELL}{side}"{value}>{_stacked(cell)}</td>'
+
+
+def _stacked(cell: str | Figure) -> str:
+    """A figure over its interval, so that a table of many columns fits a notebook."""
+    if isinstance(cell, str) or not cell.has_interval:
+        return escape(str(cell))
+    mean, _, rest = str(cell).partition(" ")
+    return f'{escape(mean)}<br><span style="font-size:80%;opacity:0.75">{escape(rest)}</span>'

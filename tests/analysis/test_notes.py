@@ -112,3 +112,13 @@ def test_no_interval_passes_what_a_metric_can_have(results):
     values = [100.0] * (len(records) - 1) + [10.0]
     made = [r.model_copy(update={"metrics": {"quality": v}}) for r, v in zip(records, values, strict=True)]
     assert column.over(made).high == 100.0
+
+
+def test_a_table_tells_how_many_sentences_were_refused(results):
+    from polyfold.types import Failure
+
+    assert "Refused" not in polyfold.table(results).note
+    refused = [r.model_copy(update={"failure": Failure("refused", "unclear")}) for r in results.of("polyfold")[:2]]
+    some = replace(results, records=[*refused, *results.of("polyfold")[2:], *results.of("oracle")])
+    count = len(some.of("polyfold"))
+    assert f"Refused, and not folded any further: 2 of {count} by polyfold." in polyfold.table(some).note
