@@ -20,7 +20,7 @@ import polyfold
 from polyfold import plugins
 from polyfold.api import attempt
 from polyfold.cli import main
-from polyfold.errors import ConfigError
+from polyfold.errors import ConfigError, GroundingError
 
 EXTENT = 0.5
 SMALL = {"row": "vcd", "batch": 8, "width": 32, "depth": 2, "learning_rate": 5e-3}
@@ -59,6 +59,8 @@ def test_nodes_lie_on_the_cloth_spread_out_and_as_high_as_it_is():
     assert (np.diff(apart, axis=1) >= -1e-3).all()
     one = nodes_of(heights, square(64, 65), EXTENT)
     assert np.allclose(one[:, :2], on_table([64, 64], EXTENT))
+    with pytest.raises(GroundingError, match="no cloth is left in the view"):
+        nodes_of(heights, square(0, 0), EXTENT)
 
 
 def test_what_lies_flat_is_joined_and_what_is_gripped_goes_along(transitions, dragged):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from polyfold.errors import GroundingError
 from polyfold_baselines.demos.window import on_table
 from polyfold_baselines.learning.sampling import farthest_first
 
@@ -20,9 +21,14 @@ def nodes_of(heights: NDArray, mask: NDArray[np.bool_], extent: float) -> Floats
 
     Args:
         heights: above the table [m], shape (SIDE, SIDE).
-        mask: where cloth is, shape (SIDE, SIDE), not empty.
+        mask: where cloth is, shape (SIDE, SIDE).
         extent: side of the view on the table [m].
+
+    Raises:
+        GroundingError: if none of it is in the view.
     """
+    if not mask.any():
+        raise GroundingError("no cloth is left in the view; lay it about where it lay at first")
     rows, columns = np.nonzero(inside(mask))
     chosen = farthest_first(np.column_stack([columns, rows]).astype(float), NODES)
     rows, columns = rows[chosen], columns[chosen]

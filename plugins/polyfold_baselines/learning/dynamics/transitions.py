@@ -57,15 +57,20 @@ class Transitions:
 
 
 def make_transitions(demos: Demos, progress: bool = True) -> tuple[Transitions, Transitions]:
-    """Drags to learn from, and those of garments held out. Raises ConfigError if no particles were kept."""
+    """Drags to learn from, and those of garments held out, without those of cloth that had been dragged out of view.
+
+    Raises:
+        ConfigError: if no particles were kept, or all drags are of one garment.
+    """
     from tqdm.auto import tqdm
 
-    apart = held_out(demos)
+    in_sight: NDArray[np.bool_] = np.any(demos.columns["mask"], axis=1)
+    apart = held_out(demos)[in_sight]
     found: list[Arrays] = []
     with tqdm(total=len(demos), unit="graph", disable=not progress) as bar:
         for cloth in demos.cloths():
             columns = {name: values[cloth.rows] for name, values in demos.columns.items()}
-            found += [_transition(cloth, columns, step) for step in range(len(columns["step"]))]
+            found += [_transition(cloth, columns, int(step)) for step in np.flatnonzero(in_sight[cloth.rows])]
             bar.update(len(columns["step"]))
     every = {name: np.stack([one[name] for one in found]) for name in found[0]}
     learned, held = (
