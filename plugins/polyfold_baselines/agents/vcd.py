@@ -6,12 +6,12 @@ gives it accurate subgoals (Table II) or the last one alone (Table III).
 
 The same here: points of the cloth that is seen are nodes of a graph; a graph network learns from the simulator which
 near nodes are joined on the cloth, another where nodes come to lie; both from random drags alone; random shooting over
-500 picks and places of one arm, the best of which is done; for folding, the cost is the Chamfer distance to the goal's
-points. Different: a whole drag is one prediction, instead of steps of a few centimetres with velocities and a picker's
-height, so that each node is told where the pick is and how far it goes; 128 nodes spread evenly, with their ten
-nearest, instead of voxels of 2 cm and a radius; 6 rounds of messages instead of 10, which are not kept at edges; the
-two networks are trained at once; half of the tries move what the goal leaves bare onto the goal, instead of all
-anywhere; no teacher that sees the whole cloth, and no reward that is learned.
+500 picks and places of one arm, the best of which is done. Different: the cost is the Chamfer distance to the goal's
+points, since smoothing, by the area that cloth covers, has no goal; a whole drag is one prediction, instead of steps of
+a centimetre or two with velocities and a picker's height, so that each node is told where the pick is and how far it
+goes; 128 nodes spread evenly, with their ten nearest, instead of voxels of 2 cm and a radius; 6 rounds of messages
+instead of 10, which are not kept at edges; the two networks are trained at once; half of the tries move what the goal
+leaves bare onto the goal, instead of all anywhere; no teacher that sees the whole cloth and predicts rewards besides.
 """
 
 from __future__ import annotations
