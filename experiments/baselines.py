@@ -44,9 +44,10 @@ def _fit(name: str, minutes: int, demos: str, passes: int, *options: str) -> Ste
 STEPS = (
     _demos("demos-1arm", 15, "--arms", "1", "--garments", "20", "--workers", "2"),
     _demos("demos-2arm", 15, "--arms", "2", "--garments", "20", "--workers", "2"),
-    _demos("drags", 40, "--agent", "random-drags", "--arms", "1", "--garments", "100", "--workers", "2"),
+    _demos("drags", 150, "--agent", "random-drags", "--arms", "1", "--garments", "100", "--workers", "2"),
     _fit("bifold", 25, "demos-2arm", 100_000),
     _fit("ltf", 40, "drags", 300_000),
+    _fit("vcd", 60, "drags", 200_000),
     _fit("foldsformer", 45, "demos-1arm", 60_000),
     _fit("foldsformer-2arm", 45, "demos-2arm", 60_000),
     _fit("langdef", 30, "demos-1arm", 80_000, "--width", "192"),

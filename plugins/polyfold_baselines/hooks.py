@@ -13,6 +13,7 @@ def register_agents(register):
     register("nearest-demo", f"{agents}.nearest:NearestDemo", "copies the closest demonstration")
     register("ppo", f"{agents}.ppo:Ppo", "depth and particles to folds, learned by trying", BASELINES)
     register("ltf", f"{agents}.ltf:LearningToFold", "goal pictures to values of drags, from folds nobody meant", TORCH)
+    register("vcd", f"{agents}.vcd:Vcd", "tries drags in a learned model of what is seen of the cloth", TORCH)
     register("wang", f"{agents}.wang:Wang", "search in a simulator for a pick at a corner of a simplified mesh")
     register("foldsformer", f"{agents}.foldsformer:Foldsformer", "goal pictures to heatmaps by attention", TORCH)
     register("langdef", f"{agents}.langdef:LangDef", "a sentence, depth and a graph to picks at its nodes", BASELINES)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from polyfold_baselines.learning.command import BY_TRYING, ROWS
+from polyfold_baselines.learning.command import EVERY
 
 import polyfold
 from experiments import baselines
@@ -27,7 +27,7 @@ def test_every_row_that_learns_is_trained_and_every_training_is_a_row():
     folders = {path.parent.name if path.suffix else path.name for path in paths}
     fitted = {step.name for step in baselines.STEPS if step.command[0] == "fit"}
     assert fitted == folders - {"demos-2arm"}
-    assert {step.command[1] for step in baselines.STEPS if step.command[0] == "fit"} == {*ROWS, *BY_TRYING}
+    assert {step.command[1] for step in baselines.STEPS if step.command[0] == "fit"} == set(EVERY)
 
 
 def test_what_is_done_is_not_done_again_and_a_failure_is_told(tmp_path, capfd):

@@ -1,14 +1,20 @@
 """Folds that nobody meant, and values of drags that are learned from them."""
 
+import json
+import shutil
+
+import cv2
 import numpy as np
 import pytest
 import torch
 from demo_plan import PLAN
 from polyfold_baselines.agents.ltf import LearningToFold
+from polyfold_baselines.demos.cloths import CLOTH
 from polyfold_baselines.demos.command import collect
+from polyfold_baselines.demos.demonstrating import unpacked
 from polyfold_baselines.demos.drags import DIRECTIONS, EACH, LENGTHS, drags
 from polyfold_baselines.demos.store import Demos
-from polyfold_baselines.demos.window import SIDE
+from polyfold_baselines.demos.window import SIDE, in_view
 from polyfold_baselines.learning.examples import make_examples
 from polyfold_baselines.learning.fitting import FitConfig, fit
 from polyfold_baselines.learning.networks.drag_values import DragValues
@@ -19,13 +25,6 @@ from polyfold.api import attempt
 from polyfold.errors import ConfigError
 
 SMALL = {"width": 32, "depth": 2, "precision": "float32", "batch": 8}
-
-
-@pytest.fixture(scope="module")
-def dragged(tmp_path_factory):
-    out = tmp_path_factory.mktemp("drags")
-    collect(PLAN.model_copy(update={"agent": "random-drags", "arms": 1}), out, progress=False)
-    return out
 
 
 def test_drags_go_every_way_and_one_way_back():
@@ -46,6 +45,41 @@ def test_each_is_one_of_them_from_the_cloth_and_begins_where_the_last_one_ended(
     assert (demos.columns["goal_mask"][again - 1] == demos.columns["mask"][again]).all()
     with pytest.raises(ConfigError, match="--arms 1"):
         collect(PLAN.model_copy(update={"agent": "random-drags"}), dragged / "two", progress=False)
+
+
+def test_the_cloth_under_the_pictures_is_kept_with_them(dragged):
+    demos = Demos.read(dragged)
+    cloths = list(demos.cloths())
+    assert [cloth.rows.stop for cloth in cloths] == sorted({int(end) + 1 for end in demos.columns["end"]})
+    for cloth in cloths:
+        masks = [*demos.masks[cloth.rows], unpacked(demos.columns["goal_mask"][cloth.rows])[-1]]
+        assert len(cloth.particles) == len(masks)
+        lies = np.linalg.norm(cloth.rest - cloth.rest.mean(0), axis=1)
+        seen = np.linalg.norm(cloth.particles[0, :, :2] - cloth.particles[0, :, :2].mean(0), axis=1)
+        assert np.abs(lies - seen).max() < 0.005, "flat at first"
+        for particles, mask in zip(cloth.particles, masks, strict=True):
+            at = in_view(particles[:, :2], cloth.extent).round().astype(int)
+            column, row = at[((at >= 0) & (at < SIDE)).all(1)].T
+            near = cv2.dilate(mask.astype(np.uint8), np.ones((3, 3), np.uint8))
+            assert near[row, column].mean() > 0.97, "no particle where no cloth is seen"
+
+
+def test_older_drags_are_read_but_not_gone_on_with(dragged, tmp_path):
+    old = tmp_path / "old"
+    shutil.copytree(dragged, old)
+    told = json.loads((old / "dataset.json").read_text())
+    (old / "dataset.json").write_text(json.dumps({**told, "schema_version": 1}))
+    for file in (old / "shards").glob("*.npz"):
+        with np.load(file) as stored:
+            kept = {name: stored[name] for name in stored.files if name not in CLOTH}
+        np.savez_compressed(file, **kept)
+    demos = Demos.read(old)
+    for name, values in Demos.read(dragged).columns.items():
+        assert demos.columns[name].tobytes() == values.tobytes()
+    with pytest.raises(ConfigError, match="holds no particles"):
+        next(demos.cloths())
+    with pytest.raises(ConfigError, match="kept less of random drags"):
+        collect(PLAN.model_copy(update={"agent": "random-drags", "arms": 1}), old, progress=False)
 
 
 def test_values_are_read_where_they_are_highest_on_the_cloth():

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from polyfold_baselines.agents.foldsformer import Foldsformer
 from polyfold_baselines.demos.window import SIDE
-from polyfold_baselines.learning import fitting
+from polyfold_baselines.learning import fitting, learner
 from polyfold_baselines.learning.fitting import FitConfig, fit
 from polyfold_baselines.learning.networks import heatmaps
 from polyfold_baselines.learning.weights import load
@@ -100,18 +100,18 @@ def test_it_folds_in_a_study_cell(overfitted):
 
 
 def test_a_killed_training_goes_on_to_the_same_weights(demonstrated, tmp_path, monkeypatch):
-    monkeypatch.setattr(fitting, "LOOK", 2)
+    monkeypatch.setattr(learner, "LOOK", 2)
     config = FitConfig(row="foldsformer", demos=str(demonstrated), passes=48, **SMALL)
     straight = fit(config, Foldsformer, tmp_path / "straight", progress=False)
-    step = fitting._Learner._step
+    step = learner.Learner._step
 
-    def interrupted(learner, number):
+    def interrupted(learning, number):
         if number == 3:
             raise KeyboardInterrupt
-        return step(learner, number)
+        return step(learning, number)
 
     with monkeypatch.context() as patch:
-        patch.setattr(fitting._Learner, "_step", interrupted)
+        patch.setattr(learner.Learner, "_step", interrupted)
         with pytest.raises(KeyboardInterrupt):
             fit(config, Foldsformer, tmp_path / "killed", progress=False)
     resumed = fit(config, Foldsformer, tmp_path / "killed", progress=False)

@@ -17,10 +17,10 @@ from polyfold.evaluation import suite
 
 pytest.importorskip("stable_baselines3", reason="needs polyfold[baselines]")
 from gymnasium.utils.env_checker import check_env
+from polyfold_baselines.learning.sampling import farthest_first
 from polyfold_baselines.learning.trying import reinforcing
 from polyfold_baselines.learning.trying.environment import PARTICLES, SIDE, FoldingTasks, TaskView, goals_of
 from polyfold_baselines.learning.trying.reinforcing import TryConfig, reinforce
-from polyfold_baselines.learning.trying.sampling import farthest_first
 
 COARSE = 0.03
 TINY = TryConfig(row="ppo", passes=16, round=8, batch=8, epochs=1, seeds=(1000, 1001), edge_length=COARSE)

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 
 from polyfold import plugins
 from polyfold.errors import ActionError, SimulationError
+from polyfold.garments import Mesh
 from polyfold.plugins.interfaces import Simulator
-from polyfold.types import Action, Observation
+from polyfold.types import Action, Observation, SimState
 from polyfold_baselines.demos.demonstrating import Arrays, DemoPlan, as_bits, as_heights, padded
-from polyfold_baselines.demos.window import SIDE, Window
+from polyfold_baselines.demos.window import SIDE, Window, on_table
 
 Floats = NDArray[np.float64]
 
@@ -41,7 +42,8 @@ def drags() -> Floats:
 def drag_at_random(plan: DemoPlan, job: int) -> Arrays:
     """What some drags of one garment came to, as :func:`polyfold_baselines.demos.demonstrating.demonstrate` has it.
 
-    The goals are what was reached, ``error_mm`` is 0 and ``text`` empty. Nothing if the first one can't be done.
+    The goals are what was reached, ``error_mm`` is 0 and ``text`` empty. Beside the folds stands the cloth under their
+    pictures, as :class:`polyfold_baselines.demos.cloths.Cloth` has it. Nothing if the first one can't be done.
     """
     task, seed = plan.jobs()[job]
     rng = np.random.default_rng([seed, zlib.crc32(task.id.encode())])
@@ -51,7 +53,7 @@ def drag_at_random(plan: DemoPlan, job: int) -> Arrays:
     seen = simulator.reset(garment, seed)
     mask = segmenter.segment(seen)
     window = Window.around(mask)
-    rows = []
+    rows, lay = [], [_particles(window, simulator.state())]
     for step in range(EACH):
         action = _drawn(window, mask, seen, rng)
         before = _view(window, seen, mask)
@@ -61,6 +63,7 @@ def drag_at_random(plan: DemoPlan, job: int) -> Arrays:
         except (ActionError, SimulationError):
             break
         after = _view(window, seen, mask)
+        lay.append(_particles(window, simulator.state()))
         rows.append({
             "height": before[0], "mask": before[1], "goal_height": after[0], "goal_mask": after[1],
             "picks": padded(window.to_view(action.picks)), "places": padded(window.to_view(action.places)),
@@ -68,11 +71,26 @@ def drag_at_random(plan: DemoPlan, job: int) -> Arrays:
             "task": np.str_(task.id), "kind": np.str_(task.garment), "garment_seed": np.int32(seed),
         })  # fmt: skip
     simulator.close()
-    return {name: np.stack([row[name] for row in rows]) for name in rows[0]} if rows else {}
+    if not rows:
+        return {}
+    columns = {name: np.stack([row[name] for row in rows]) for name in rows[0]}
+    extent = np.array(window.extent(seen.camera), np.float32)
+    return {**columns, **_cloth(garment.mesh, lay), "extent": extent}
 
 
 def _view(window: Window, seen: Observation, mask: NDArray[np.bool_]) -> tuple[NDArray, NDArray]:
     return as_heights(window, seen.camera.elevation - seen.depth), as_bits(window, mask)
+
+
+def _particles(window: Window, state: SimState) -> NDArray[np.float16]:
+    seen = window.to_view(state.camera.to_pixels(state.positions))
+    return np.column_stack([on_table(seen, window.extent(state.camera)), state.positions[:, 2]]).astype(np.float16)
+
+
+def _cloth(mesh: Mesh, lay: list[NDArray[np.float16]]) -> Arrays:
+    return {
+        "particles": np.stack(lay), "rest": mesh.vertices.astype(np.float16), "layer": mesh.layer, "seam": mesh.seam,
+    }  # fmt: skip
 
 
 def _drawn(window: Window, mask: NDArray[np.bool_], seen: Observation, rng: np.random.Generator) -> Action:

@@ -7,7 +7,7 @@ import json
 import os
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,9 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polyfold.errors import ConfigError
+from polyfold_baselines.demos.cloths import CLOTH, Cloth
 from polyfold_baselines.demos.demonstrating import Arrays, DemoPlan, unpacked
 
-SCHEMA = 1
+SCHEMA = 2
+READ = (1, SCHEMA)
+"""Versions of the format; the first kept no particles of random drags."""
 
 
 class DemoFolder:
@@ -36,6 +39,8 @@ class DemoFolder:
         held = _description(path) if (path / "dataset.json").exists() else None
         if held is not None and held["plan"] != plan.model_dump(mode="json"):
             raise ConfigError(f"{path} holds other demonstrations; choose another folder, or repeat its settings")
+        if held is not None and held["schema_version"] < SCHEMA and plan.agent == "random-drags":
+            raise ConfigError(f"{path} was begun by a version that kept less of random drags; choose another folder")
         if held is None:
             self._describe({})
 
@@ -83,11 +88,13 @@ class Demos:
         hash: of all that they hold.
         columns: every fold's row, as :func:`polyfold_baselines.demos.demonstrating.demonstrate` names them; ``end`` is
             the row of the last fold of the same demonstration.
+        path: the folder.
     """
 
     plan: DemoPlan
     hash: str
     columns: Arrays
+    path: Path
 
     @classmethod
     def read(cls, path: str | Path) -> Demos:
@@ -96,13 +103,13 @@ class Demos:
         told = _description(path)
         if "hash" not in told:
             raise ConfigError(f"the demonstrations in {path} are not finished; run the same 'polyfold demos' again")
-        shards = [arrays for _, arrays in _shards(path) if len(arrays.get("step", ()))]
+        shards = [arrays for arrays in _shards(path, without=CLOTH) if len(arrays.get("step", ()))]
         if not shards:
             raise ConfigError(f"{path} holds no demonstration that came to its end; collect more")
         columns = {name: np.concatenate([shard[name] for shard in shards]) for name in shards[0]}
         lengths = np.array([len(shard["step"]) for shard in shards])
         columns["end"] = np.repeat(np.cumsum(lengths) - 1, lengths)
-        return cls(DemoPlan(**told["plan"]), told["hash"], columns)
+        return cls(DemoPlan(**told["plan"]), told["hash"], columns, path)
 
     def __len__(self) -> int:
         return len(self.columns["step"])
@@ -112,16 +119,29 @@ class Demos:
         """The cloth before each fold, shape (N, SIDE, SIDE)."""
         return unpacked(self.columns["mask"])
 
+    def cloths(self) -> Iterator[Cloth]:
+        """The cloth of each demonstration, read from disk one by one. Raises ConfigError if none was kept."""
+        first = 0
+        for shard in _shards(self.path):
+            if count := len(shard.get("step", ())):
+                if "particles" not in shard:
+                    raise ConfigError(
+                        f"{self.path} holds no particles; drag anew with "
+                        "'polyfold demos --agent random-drags --arms 1', into another folder"
+                    )
+                yield Cloth.of(slice(first, first + count), shard)
+                first += count
 
-def _shards(path: Path) -> Iterator[tuple[int, Arrays]]:
+
+def _shards(path: Path, without: Collection[str] = ()) -> Iterator[Arrays]:
     for file in sorted((path / "shards").glob("*.npz")):
-        yield int(file.stem), _read(file)
+        yield _read(file, without)
 
 
-def _read(file: Path) -> Arrays:
+def _read(file: Path, without: Collection[str] = ()) -> Arrays:
     try:
         with np.load(file, allow_pickle=False) as stored:
-            return dict(stored)
+            return {name: stored[name] for name in stored.files if name not in without}
     except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise ConfigError(f"{file} is damaged ({error}); remove it and run the same 'polyfold demos' again") from error
 
@@ -130,8 +150,8 @@ def _description(path: Path) -> dict[str, Any]:
     file = path / "dataset.json"
     try:
         told = json.loads(file.read_text(encoding="utf-8"))
-        if not isinstance(told, dict) or told.get("schema_version") != SCHEMA:
-            raise ValueError(f"no schema_version {SCHEMA}")
+        if not isinstance(told, dict) or told.get("schema_version") not in READ:
+            raise ValueError(f"no schema_version of {READ}")
         DemoPlan(**told["plan"])
     except OSError as error:
         raise ConfigError(f"there are no demonstrations in {path}; make some with 'polyfold demos --out'") from error

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from polyfold.errors import GroundingError
+from polyfold.geometry import Camera
 
 Floats = NDArray[np.float64]
 
@@ -47,6 +48,10 @@ class Window:
         """Points of the view, shape (N, 2), in the camera's picture [px]."""
         return (np.asarray(points, float) - (SIDE - 1) / 2) * (self.side / SIDE) + self.centre
 
+    def extent(self, camera: Camera) -> float:
+        """Its side on the table [m]."""
+        return self.side / camera.pixels_per_metre
+
     def view(self, picture: NDArray, outside: float = 0.0) -> NDArray[np.float32]:
         """A picture or mask, shape (H, W), through the window, shape (SIDE, SIDE): means of what each pixel covers."""
         import cv2
@@ -62,6 +67,21 @@ class Window:
             borderMode=cv2.BORDER_CONSTANT, borderValue=outside,
         )  # fmt: skip
         return np.asarray(seen, np.float32).reshape(SIDE, fine, SIDE, fine).mean((1, 3))
+
+
+def on_table(points: ArrayLike, extent: float) -> Floats:
+    """Points of a view, shape (..., 2), seen from its middle on the table [m]: x right, y down.
+
+    Args:
+        points: from 0 to :data:`SIDE`.
+        extent: side of the window on the table [m].
+    """
+    return (np.asarray(points, float) - (SIDE - 1) / 2) * (extent / SIDE)
+
+
+def in_view(points: ArrayLike, extent: float) -> Floats:
+    """Points on the table, as :func:`on_table` has them, in the view again."""
+    return np.asarray(points, float) * (SIDE / extent) + (SIDE - 1) / 2
 
 
 def on_cloth(points: ArrayLike, mask: NDArray[np.bool_]) -> Floats:

@@ -28,10 +28,18 @@ def training_in(out: Path, note: Mapping[str, Any]) -> Iterator[None]:
     out.mkdir(parents=True, exist_ok=True)
     with exclusive(out):
         held = out / "fit.json"
-        if held.exists() and held.read_text(encoding="utf-8") != said:
+        if held.exists() and _told(held) != json.loads(said):
             raise ConfigError(f"{out} holds another training; choose another folder")
         held.write_text(said, encoding="utf-8")
         yield
+
+
+def _told(held: Path) -> Any:
+    """What ``fit.json`` says, whatever the order; None if it was cut off."""
+    try:
+        return json.loads(held.read_text(encoding="utf-8"))
+    except ValueError:
+        return None
 
 
 def write(path: Path, tensors: Mapping[str, Tensor], told: Mapping[str, Any]) -> None:

@@ -17,9 +17,12 @@ ROWS = {
     "ltf": "polyfold_baselines.agents.ltf:LearningToFold",
     "langdef": "polyfold_baselines.agents.langdef:LangDef",
 }
-"""Baselines that learn from demonstrations or drags."""
+"""Baselines that learn heatmaps or values from demonstrations or drags."""
+BY_DRAGGING = {"vcd": "polyfold_baselines.agents.vcd:Vcd"}
+"""Baselines that learn from random drags what cloth does."""
 BY_TRYING = {"ppo": "polyfold_baselines.agents.ppo:Ppo"}
 """Baselines that learn by trying folds."""
+EVERY = (*ROWS, *BY_DRAGGING, *BY_TRYING)
 
 
 class Fit:
@@ -28,20 +31,22 @@ class Fit:
     @staticmethod
     def configure(parser: argparse.ArgumentParser) -> None:
         """Add the options."""
-        parser.add_argument("row", metavar="BASELINE", help=f"one of {', '.join((*ROWS, *BY_TRYING))}")
+        parser.add_argument("row", metavar="BASELINE", help=f"one of {', '.join(EVERY)}")
         parser.add_argument("--demos", type=Path, metavar="DIR", help="folder of polyfold demos; ppo needs none")
         parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder; resumed if it exists")
-        parser.add_argument("--passes", type="count", metavar="N", help="folds looked at (default: 100000; ppo: 20000)")
-        parser.add_argument("--width", type="count", metavar="N", help="of the network (default: 128)")
-        parser.add_argument("--depth", type="count", metavar="N", help="of the network (default: 4)")
+        parser.add_argument(
+            "--passes", type="count", metavar="N", help="folds looked at (default: 100000; vcd: 200000; ppo: 20000)"
+        )
+        parser.add_argument("--width", type="count", metavar="N", help="of the network (default: 128; vcd: 64)")
+        parser.add_argument("--depth", type="count", metavar="N", help="of the network (default: 4; vcd: 6)")
         parser.add_argument("--seed", type="seed", metavar="N", help="of weights and order (default: 0)")
         parser.add_argument("--device", choices=["auto", "cpu", "cuda"], default="auto", help="default: auto")
 
     @staticmethod
     def run(arguments: argparse.Namespace) -> int:
         """Train what is missing and say how well it picks."""
-        if arguments.row not in (*ROWS, *BY_TRYING):
-            hint = did_you_mean(arguments.row, (*ROWS, *BY_TRYING))
+        if arguments.row not in EVERY:
+            hint = did_you_mean(arguments.row, EVERY)
             raise ConfigError(f"no baseline is called {arguments.row!r}; {hint}")
         if arguments.row in BY_TRYING:
             weights = _tried(arguments)
@@ -54,14 +59,23 @@ class Fit:
 
 
 def _fitted(arguments: argparse.Namespace) -> Path:
-    from importlib import import_module
+    settings = {"row": arguments.row, "demos": str(arguments.demos)}
+    settings |= _chosen(arguments, "passes", "width", "depth", "seed")
+    row = _class({**ROWS, **BY_DRAGGING}[arguments.row])
+    if arguments.row in BY_DRAGGING:
+        from polyfold_baselines.learning.dynamics.training import DynamicsConfig, fit_dynamics
 
+        return fit_dynamics(_valid(DynamicsConfig, **settings), row, arguments.out, arguments.device)
     from polyfold_baselines.learning.fitting import FitConfig, fit
 
-    module, _, name = ROWS[arguments.row].partition(":")
-    chosen = _chosen(arguments, "passes", "width", "depth", "seed")
-    config = _valid(FitConfig, row=arguments.row, demos=str(arguments.demos), **chosen)
-    return fit(config, getattr(import_module(module), name), arguments.out, arguments.device)
+    return fit(_valid(FitConfig, **settings), row, arguments.out, arguments.device)
+
+
+def _class(target: str) -> Any:
+    from importlib import import_module
+
+    module, _, name = target.partition(":")
+    return getattr(import_module(module), name)
 
 
 def _tried(arguments: argparse.Namespace) -> Path:

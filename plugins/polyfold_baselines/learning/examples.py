@@ -61,16 +61,20 @@ def make_examples(demos: Demos, most_error_mm: float) -> tuple[Examples, Example
     Raises:
         ConfigError: if too few are left, or there is but one garment.
     """
-    columns = demos.columns
-    good = np.flatnonzero(columns["error_mm"] <= most_error_mm)
-    seeds = np.unique(columns["garment_seed"])
-    if len(seeds) < 2 or len(good) < 2:
-        raise ConfigError(
-            f"{len(good)} good folds of {len(seeds)} garments teach nothing; demonstrate more with 'polyfold demos'"
-        )
+    good = demos.columns["error_mm"] <= most_error_mm
+    apart = held_out(demos)
+    if good.sum() < 2:
+        raise ConfigError(f"{good.sum()} good folds teach nothing; demonstrate more with 'polyfold demos'")
+    return _examples(demos, np.flatnonzero(good & ~apart)), _examples(demos, np.flatnonzero(good & apart))
+
+
+def held_out(demos: Demos) -> NDArray[np.bool_]:
+    """Which folds nothing is learned from, by their garments, shape (N,). Raises ConfigError if there is but one."""
+    seeds = np.unique(demos.columns["garment_seed"])
+    if len(seeds) < 2:
+        raise ConfigError(f"the folds of one garment, {seeds[0]}, teach nothing; collect more with 'polyfold demos'")
     held = seeds[-max(1, round(HELD_OUT * len(seeds))) :]
-    apart = np.isin(columns["garment_seed"][good], held)
-    return _examples(demos, good[~apart]), _examples(demos, good[apart])
+    return np.isin(demos.columns["garment_seed"], held)
 
 
 def _examples(demos: Demos, rows: NDArray[np.int64]) -> Examples:

@@ -64,16 +64,16 @@ class Graph(nn.Module):
         features = self.first(torch.cat([at, edge], dim=-1))
         near = torch.cdist(at, at).topk(min(NEIGHBOURS + 1, at.shape[1]), largest=False).indices[..., 1:]
         between = torch.cat(
-            [_of(at, near) - at[:, :, None], (_of(heights[..., None], near) - heights[..., None, None])], -1
+            [gathered(at, near) - at[:, :, None], (gathered(heights[..., None], near) - heights[..., None, None])], -1
         )
         for message, norm in zip(self.messages, self.norms, strict=True):
             own = features[:, :, None].expand(-1, -1, near.shape[2], -1)
-            told = message(torch.cat([own, _of(features, near), between], dim=-1))
+            told = message(torch.cat([own, gathered(features, near), between], dim=-1))
             features = norm(features + told.mean(2))
         return features
 
 
-def _of(values: Tensor, near: Tensor) -> Tensor:
+def gathered(values: Tensor, near: Tensor) -> Tensor:
     """Values, shape (N, K, C), of each point's neighbours, shape (N, K, M, C)."""
     count, points, many = near.shape
     flat = near.reshape(count, -1, 1).expand(-1, -1, values.shape[-1])

@@ -16,7 +16,7 @@ from polyfold.tasks import Task, fold_lines
 from polyfold.types import Action, Observation, SimState
 from polyfold_baselines.demos.window import SIDE, Window, on_cloth
 from polyfold_baselines.learning.examples import TALL
-from polyfold_baselines.learning.trying.sampling import farthest_first
+from polyfold_baselines.learning.sampling import farthest_first
 
 Floats = NDArray[np.float64]
 
