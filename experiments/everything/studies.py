@@ -155,7 +155,8 @@ def _policies(results: Results) -> Sequence[Section]:
 
 def _within_reach(results: Results, default: str) -> str:
     """How much better than a variant the best pick of all variants could be: as good as any, chosen after the fact."""
-    lines = ["| kind | n | strict % | strict % of the best variant, each time | missed by every variant |", "|" + "---|" * 5]
+    heads = ("kind", "n", "strict %", "strict % of the best variant, each time", "missed by every variant")
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     for kind in [*results.kinds(), None]:
         good: dict[str, list[bool]] = {}
         for name in results.study.variants:

@@ -64,11 +64,12 @@ def remarks(results: Results) -> str:
 
 
 def _refusals(results: Results) -> str:
-    """How many sentences each variant refused: their cloth lies as it lay, whatever the table's millimetres look like."""
+    """How many sentences each variant refused: that cloth lies as it lay, however few millimetres it is off."""
     told = []
     for variant in results.study.variants:
         records = results.of(variant)
-        refused = sum(record.failure is not None and record.failure.stage == "refused" for record in records)
+        failures = [record.failure.stage for record in records if record.failure is not None]
+        refused = failures.count("refused")
         if refused:
             told.append(f"{refused} of {len(records)} by {variant}")
     return f" Refused, and not folded any further: {', '.join(told)}." if told else ""

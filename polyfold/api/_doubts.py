@@ -27,6 +27,10 @@ Of 6 real t-shirts the rectangle is 5.2 to 7.8 px farther than their own polygon
 CLEAR = 5.5
 """Nothing explains an outline that it is farther from than this [px]; of 5 real towels a rectangle is at most 5.0."""
 
+POOR = 5.0
+"""A polygon that is farther than this from an outline [px] fits too badly to be believed without a look: real shorts as
+pants are off by 5.9 to 9.1, a t-shirt as pants by 6.5, of 6 real t-shirts none by more than 2.8."""
+
 OTHER_COLOUR = 60.0
 """Colours farther than this from the cloth's [RGB units] are another thing's, or a print's."""
 
@@ -63,6 +67,8 @@ def doubts(
     if other and fits[other] < min(scene.residual + AS_WELL, CLEAR):
         beside = f"off by {fits[other]:.1f} px, {kind!r} by {scene.residual:.1f}"
         yield 0.3, f"{other!r} explains the outline as well ({beside}); is it {kind!r} at all?"
+    elif scene.residual > POOR:
+        yield 0.8, f"the polygon is off by {scene.residual:.1f} px; is it {kind!r}, and does it lie flat?"
     if rgb is not None and (share := _other_share(rgb, scene.mask)) >= OTHER_SHARE:
         yield 0.5, f"{share:.0%} of it have another colour: a large print, or the cloth lies on what was outlined"
 

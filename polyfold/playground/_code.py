@@ -27,8 +27,9 @@ def as_code(garment: Garment, seed: int, experiment: Experiment, moves: Iterable
     lines = ["import polyfold", ""]
     arguments = [repr(garment.kind)]
     if not _is_drawn(garment, seed, experiment):
-        lines += [f"# the one that was played with, {garment.name}: with all that you made it with"]
-        lines += [f"garment = polyfold.garment({garment.kind!r}, seed={garment.seed or 0})"]
+        # Nothing that runs: without what made it, it would be another garment, and the folds would be others.
+        made = f"polyfold.garment({garment.kind!r}, seed={garment.seed or 0}, ...)"
+        lines += [f"garment = ...  # {garment.name}, made as you made it: {made}"]
         arguments = ["garment"]
     arguments += [f"seed={seed}"] if seed else []
     arguments += [f"{name}={_plain(value)!r}" for name, value in _chosen(experiment).items()]

@@ -68,6 +68,11 @@ def planned(seen: Observation, drawn: Image, plan: Decision, with_map: bool) -> 
     return overlay(seen, bare, plan.fold_line, plan.action, action_map=values, zoom=ZOOM, shown=drawn)
 
 
+def has_values(plan: Decision | None) -> bool:
+    """Whether the policy says of every place to pick how good it is."""
+    return plan is not None and _values(plan) is not None
+
+
 def _values(plan: Decision) -> ActionMap | None:
     try:
         return None if plan.action_map is None else plan.action_map()

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -13,15 +12,16 @@ from typing import Any
 import numpy as np
 
 from polyfold import plugins
-from polyfold.api._fold import GIF_RATE, folder_for, garment_for, save
+from polyfold.api._fold import folder_for, garment_for, save
 from polyfold.config import Experiment
 from polyfold.errors import ConfigError, GroundingError
 from polyfold.evaluation import judge
 from polyfold.garments import Garment
 from polyfold.geometry import FoldLine, contour_of
+from polyfold.playground._motion import Motion
 from polyfold.playground._moves import Move, Turn, refuse_what_is_no_move
 from polyfold.plugins._fabrics import garment_template
-from polyfold.plugins.interfaces import RecordsMotion, action_map_later
+from polyfold.plugins.interfaces import action_map_later
 from polyfold.rollout._inputs import Start
 from polyfold.rollout._loop import build_agent
 from polyfold.rollout._rollout import Mark, Rollout
@@ -29,7 +29,6 @@ from polyfold.rollout._sentences import plain
 from polyfold.rollout._transcript import Transcript
 from polyfold.types import Action, Decision, Episode, Observation, Scene, SimState, Step
 from polyfold.types._views import view_of
-from polyfold.viz._film import Moment
 
 
 def play(
@@ -67,6 +66,7 @@ class Playground:
         experiment: with which components.
         seed: of how it lay, and of the random choices.
         turns: what was asked for so far.
+        motion: pictures of the cloth while it moves.
         widget: what shows it in JupyterLab, once it was shown.
     """
 
@@ -93,11 +93,8 @@ class Playground:
         self.turns: list[Turn] = []
         self._closed: Episode | None = None
         self._scene: Scene | None = None
-        self._moments: list[Moment] = []
-        self._watcher: Callable[[Observation], Any] | None = None
+        self.motion = Motion(self._simulator, lambda: len(self.steps))
         self.widget: Any = None
-        if isinstance(self._simulator, RecordsMotion):
-            self._simulator.record(self._moved, GIF_RATE)
 
     @property
     def steps(self) -> tuple[Step, ...]:
@@ -186,12 +183,13 @@ class Playground:
         if made:
             self.turns.append(Turn(move, made, before))
             self._scene = None
+        self._show()
         return made
 
     def _keep_what_was_finished(self, before: Mark) -> None:
         """After a fold that was broken off: the cloth lies as after the last whole one, each a move of its own."""
         self._simulator.restore(self.state)
-        self._forget_motion()
+        self.motion.forget_undone()
         for step in self.steps[before.steps :]:
             mark = before._replace(steps=step.index)
             self.turns.append(Turn(step.action, (step,), mark))
@@ -209,13 +207,15 @@ class Playground:
             return False
         self._rollout.go_back(self.turns[-1].before)
         self.turns.pop()
-        self._forget_motion()
+        self.motion.forget_undone()
         self._scene = None
+        self._show()
         return True
 
-    def _forget_motion(self) -> None:
-        """Of folds that are taken back or were broken off."""
-        self._moments = [moment for moment in self._moments if moment.fold < len(self.steps)]
+    def _show(self) -> None:
+        """Have the widget, if one was shown, show what was done from code, too."""
+        if self.widget is not None:
+            self.widget.show()
 
     @property
     def episode(self) -> Episode:
@@ -233,7 +233,7 @@ class Playground:
         if not str(folder):
             raise ConfigError("name a folder to save to")
         folder = folder_for(Path(folder).expanduser())
-        save(self.episode, folder, self._moments)
+        save(self.episode, folder, self.motion.moments)
         return folder
 
     def task(self, name: str = "my-task") -> str:
@@ -264,6 +264,8 @@ class Playground:
         if self._closed is None:
             self._closed = self._rollout.episode(self.seed, self.seed)
             self._simulator.close()
+            if self.widget is not None:
+                self.widget.status = "this playground is closed; begin anew with polyfold.play(...)"
 
     def __enter__(self) -> Playground:
         return self
@@ -297,20 +299,6 @@ class Playground:
     def _refuse_if_untouched(self) -> None:
         if not self.turns:
             raise ConfigError("nothing was folded yet; fold something first")
-
-    @contextmanager
-    def watched(self, watcher: Callable[[Observation], Any]) -> Iterator[None]:
-        """Hand a watcher pictures of the cloth while it moves, where the simulator can."""
-        self._watcher = watcher
-        try:
-            yield
-        finally:
-            self._watcher = None
-
-    def _moved(self, seen: Observation) -> None:
-        self._moments.append(Moment(seen, self._simulator.state(), len(self.steps)))
-        if self._watcher is not None:
-            self._watcher(seen)
 
     def _repr_mimebundle_(self, **options: Any) -> dict[str, Any]:
         return view_of(self, "mimebundle", options)

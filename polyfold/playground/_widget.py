@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +13,9 @@ import traitlets
 from polyfold.errors import PolyfoldError
 from polyfold.geometry import FoldLine
 from polyfold.playground._moves import Move
-from polyfold.playground._picture import lying, planned
+from polyfold.playground._picture import has_values, lying, planned
 from polyfold.playground._playground import Playground
-from polyfold.types import Action, Decision, Observation
+from polyfold.types import Action, Decision, Observation, Step
 from polyfold.viz import png
 from polyfold.viz._draw._style import ARMS, FOLD_LINE, css
 
@@ -71,7 +71,12 @@ class PlaygroundWidget(anywidget.AnyWidget):
             self.planned = self._plan is not None
             self.picture = png(drawn)
 
-    def _draw_again(self, _: Any) -> None:
+    def _draw_again(self, change: Mapping[str, Any]) -> None:
+        if change["name"] == "values" and self.values and not has_values(self._plan):
+            self.status = (
+                "a map is drawn once a fold line is, by a policy that values every place to pick; this one is "
+                f"{self._playground.experiment.policy.name}, and csam+caso is one that does"
+            )
         self.show()
 
     def _received(self, _: Any, content: Mapping[str, Any], buffers: Any) -> None:
@@ -134,18 +139,29 @@ class PlaygroundWidget(anywidget.AnyWidget):
             self._do(self._move, "folding")
 
     def _say(self, told: Mapping[str, Any]) -> None:
-        self._do(str(told["sentence"]), "reading and folding")
+        if sentence := str(told["sentence"]).strip():
+            self._do(sentence, "reading and folding")
+        else:
+            self.status = "type what to fold first, such as: fold it in half"
 
     def _do(self, move: Move, doing: str) -> None:
         self.busy, self.status = True, f"{doing} … (the kernel's stop button ends it)"
         try:
-            with self._playground.watched(self._show_motion):
+            with self._playground.motion.watched(self._show_motion):
                 steps = self._playground.fold(move)
-            self.status = "; ".join(step.in_words() for step in steps) or "nothing was left to fold"
+            self.status = self._told(steps)
         except KeyboardInterrupt:
             self.status = "stopped; the cloth lies as before that fold"
         finally:
             self.busy = False
+
+    def _told(self, steps: Sequence[Step]) -> str:
+        """What was folded, and how near all of it so far came to what was asked for or planned."""
+        if not steps:
+            return "nothing was left to fold"
+        words = "; ".join(step.in_words() for step in steps)
+        fidelity = self._playground.episode.fidelity
+        return words if fidelity is None else f"{words}; beside the ideal: {fidelity.figures()}"
 
     def _show_motion(self, seen: Observation) -> None:
         self.send({"do": "frame"}, [png(seen.rgb)])

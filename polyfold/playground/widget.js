@@ -128,12 +128,10 @@ function render({ model, el }) {
     type: "text", placeholder: "or say it: fold it in half", "aria-label": "a sentence",
     onkeydown: (event) => {
       event.stopPropagation();
-      if (event.key === "Enter" && sentence.value.trim()) doing("say", { sentence: sentence.value });
+      if (event.key === "Enter") doing("say", { sentence: sentence.value });
     },
   });
-  const say = button("Go", "fold as the sentence says", () => {
-    if (sentence.value.trim()) doing("say", { sentence: sentence.value });
-  });
+  const say = button("Go", "fold as the sentence says", () => doing("say", { sentence: sentence.value }));
   const tick = (name, label) => {
     const box = element("input", { type: "checkbox", onchange: () => { model.set(name, box.checked); model.save_changes(); } });
     box.checked = model.get(name);

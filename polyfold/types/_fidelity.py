@@ -55,23 +55,24 @@ class Fidelity:
             asked = "which was named" if self.reference == "task" else "which the sentence asks for"
             asked += f", although the sentence asks for {self.contradicted}" if self.contradicted else ""
             quality = "" if math.isnan(self.quality) else f", quality {self.quality:.0f} of 100"
-            return f"{self.verdict or 'compared'}: {self._figures()}{quality}; beside the ideal {task}, {asked}"
+            return f"{self.verdict or 'compared'}: {self.figures()}{quality}; beside the ideal {task}, {asked}"
         if self.reference == "outline":
             return (
-                f"{self._figures()}, beside the outline seen first folded along the planned lines; nobody measured "
+                f"{self.figures()}, beside the outline seen first folded along the planned lines; nobody measured "
                 "the cloth itself: look at the picture"
             )
         ended = "not as planned" if self.verdict == "bad" else "as planned"
         if self.reference == "recognised":
             return (
-                f"{ended}: {self._figures()}, beside the ideal {task}, whose lines the plan has; nothing vouches for "
+                f"{ended}: {self.figures()}, beside the ideal {task}, whose lines the plan has; nothing vouches for "
                 "this having been meant: look at the picture, or name the task"
             )
         return (
             f"nothing vouches for the plan: it is no known task's, and compared with itself the cloth ended {ended} "
-            f"({self._figures()}); look at the picture, or name the task that was meant"
+            f"({self.figures()}); look at the picture, or name the task that was meant"
         )
 
-    def _figures(self) -> str:
+    def figures(self) -> str:
+        """How near it came, in figures alone."""
         moved = self.moved_part_error_mm
         return f"IoU {self.iou:.3f}" + ("" if math.isnan(moved) else f", moved part off by {moved:.1f} mm")

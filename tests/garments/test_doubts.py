@@ -54,7 +54,14 @@ def test_real_towels_that_are_called_t_shirts_are_not(outline):
 
 @pytest.mark.parametrize("outline", of_kind("shorts"))
 def test_real_shorts_are_doubted_for_their_fit_alone(outline):
-    assert polyfold.ground("pants", outline=outline).doubts == ()
+    (doubt,) = polyfold.ground("pants", outline=outline).doubts
+    assert doubt.startswith("the polygon is off by")
+
+
+def test_a_t_shirt_that_is_called_pants_is_doubted():
+    found = polyfold.ground("pants", image=Path(polyfold.__file__).parent / "samples" / "tshirt.jpg")
+    assert found.confidence < 0.5
+    assert "is it 'pants', and does it lie flat?" in found.doubts[0]
 
 
 def test_a_kind_that_fails_is_no_reason_to_stop(monkeypatch):

@@ -120,7 +120,7 @@ def test_an_interrupted_fold_leaves_the_cloth_as_before_it(playground):
     def interrupt(_):
         raise KeyboardInterrupt
 
-    with playground.watched(interrupt), pytest.raises(KeyboardInterrupt):
+    with playground.motion.watched(interrupt), pytest.raises(KeyboardInterrupt):
         playground.fold(polyfold.FoldLine((200.0, 80.0), (200.0, 320.0)))
     assert len(playground.steps) == 1
     assert playground._simulator.state().positions == pytest.approx(before, abs=0)
@@ -134,11 +134,11 @@ def test_a_sentence_that_is_broken_off_leaves_its_whole_folds_each_a_move_of_its
         if seen[-1] == 1:
             raise KeyboardInterrupt
 
-    with playground.watched(interrupt), pytest.raises(KeyboardInterrupt):
+    with playground.motion.watched(interrupt), pytest.raises(KeyboardInterrupt):
         playground.fold("fold it in half, then fold it in half again")
     assert [type(turn.move) for turn in playground.turns] == [polyfold.Action]
     assert "polyfold.Action(" in playground.code()
-    assert {moment.fold for moment in playground._moments} == {0}
+    assert {moment.fold for moment in playground.motion.moments} == {0}
     playground.undo()
     done = playground.episode
     assert (done.steps, done.subgoals, done.calls) == ((), (), ())
@@ -196,7 +196,7 @@ def test_the_code_folds_the_same_again(tmp_path):
 def test_code_names_the_components_and_says_where_a_seed_does_not_make_the_garment():
     with polyfold.play(square(2), 2, policy="farthest", fabric={"name": "denim"}) as playground:
         code = playground.code()
-    assert "# the one that was played with, square-0002" in code
+    assert "garment = ...  # square-0002, made as you made it: polyfold.garment('square', seed=2, ...)" in code
     assert "polyfold.play(garment, seed=2, fabric='denim', policy='farthest')" in code
 
 

@@ -99,3 +99,25 @@ def test_what_cannot_be_read_is_answered_all_the_same(table):
     assert sent == ["answered"] * 4
     send("line", start=[-1e9, 200], end=[1e9, 200])
     assert playground.widget.planned
+
+
+def test_what_is_folded_from_code_is_shown_too(table):
+    playground, _ = table
+    flat = playground.widget.picture
+    playground.fold("fold it in half")
+    assert len(playground.widget.turns) == 1
+    assert playground.widget.picture != flat
+    playground.undo()
+    assert playground.widget.turns == []
+    assert playground.widget.picture == flat
+    playground.close()
+    assert "closed" in playground.widget.status
+
+
+def test_what_can_not_be_shown_is_said_and_a_fold_with_how_near_it_came(table):
+    playground, send = table
+    playground.widget.values = True
+    assert "csam+caso is one that does" in playground.widget.status
+    assert "type what to fold first" in send("say", sentence="  ").status
+    send("line", start=[80, 200], end=[320, 200])
+    assert "beside the ideal: IoU 0.9" in send("fold").status
