@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 Job = tuple[str, int]
 """A task and a garment's seed."""
+EXPORTED = "polyfold-export.json"
+"""What says in a data set which command made it."""
 
 
 class Export:
@@ -35,7 +37,9 @@ class Export:
             default="seen",
             help="of the tasks, unless --tasks names them (default: seen)",
         )
-        parser.add_argument("--tasks", nargs="+", default=(), metavar="ID", help="only these tasks")
+        parser.add_argument(
+            "--tasks", nargs="+", default=(), metavar="ID", help="only these tasks; square-corner-* is several"
+        )
         parser.add_argument("--agent", default="fold-lines", metavar="NAME", help="who folds (default: fold-lines)")
         parser.add_argument("--garments", type="count", default=5, metavar="N", help="for each task (default: 5)")
         parser.add_argument("--first-seed", type="seed", default=1000, metavar="N", help="of them (default: 1000)")
@@ -72,8 +76,9 @@ def export(jobs: Sequence[Job], fold: Any, out: Path, workers: int, settings: An
     from polyfold.studies import in_processes
     from polyfold_interchange.lerobot import write_dataset
 
-    if out.exists() and any(out.iterdir()):
-        raise ConfigError(f"{out} holds something already; choose another folder")
+    whole = json.loads(json.dumps({"settings": settings, "jobs": list(jobs)}))
+    if (kept := _finished(out, whole)) is not None:
+        return kept
     digest = hashlib.sha256(json.dumps(settings).encode()).hexdigest()[:12]
     parts = out.with_name(f"{out.name}.parts-{digest}")
     parts.mkdir(parents=True, exist_ok=True)
@@ -88,11 +93,27 @@ def export(jobs: Sequence[Job], fold: Any, out: Path, workers: int, settings: An
             "no episode succeeded, so there is nothing to export; keep failures with --all, or change --agent"
         )
     write_dataset(found, out)
+    (out / EXPORTED).write_text(json.dumps({**whole, "episodes": len(found)}), "utf-8")
     for job in jobs:
         _part(parts, job).unlink()
     if not any(parts.iterdir()):
         parts.rmdir()
     return len(found)
+
+
+def _finished(out: Path, whole: Mapping[str, Any]) -> int | None:
+    """How many episodes a folder holds that the same command made; None where it is to be made.
+
+    Raises:
+        ConfigError: if it holds something else.
+    """
+    if not out.exists() or not any(out.iterdir()):
+        return None
+    file = out / EXPORTED
+    told = json.loads(file.read_text("utf-8")) if file.is_file() else {}
+    if {name: told.get(name) for name in whole} != dict(whole):
+        raise ConfigError(f"{out} holds something else already; choose another folder")
+    return int(told["episodes"])
 
 
 def recorded(suite_name: str, agent: str, edge_length: float, failed_too: bool, job: Job) -> Recording | None:
@@ -115,9 +136,12 @@ def recorded(suite_name: str, agent: str, edge_length: float, failed_too: bool, 
 
 def _jobs(suite_name: str, split: str, tasks: Sequence[str], first_seed: int, garments: int) -> list[Job]:
     from polyfold.evaluation import suite
+    from polyfold.tasks import Task
 
     found = suite(suite_name)
-    chosen = [found.task(name) for name in tasks] or [task for task in found.tasks if task.split in (split, None)]
+    chosen = found.matching(tasks) if tasks else [task for task in found.tasks if task.split in (split, None)]
+    if goals := [task.id for task in chosen if not isinstance(task, Task)]:
+        raise ConfigError(f"{goals[0]} leaves its folds open, so that nobody can show them; choose tasks with folds")
     return [(task.id, seed) for seed in range(first_seed, first_seed + garments) for task in chosen]
 
 

@@ -57,6 +57,8 @@ class FoldingEnv(gymnasium.Env):
     ) -> None:
         if seeds[0] > seeds[1]:
             raise ConfigError(f"seeds are the first and the last garment, not {seeds}; give them in order")
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ConfigError(f"render_mode is rgb_array or None, not {render_mode!r}; there is no window")
         self._task = suite(suite_name).task(task)
         self._seeds, self._edge_length = seeds, edge_length
         self._most = len(self._task.steps) + SPARE if max_folds is None else max_folds
@@ -67,6 +69,7 @@ class FoldingEnv(gymnasium.Env):
         self._steps: list[Step] = []
         self._numbers: NDArray[np.float32] | None = None
         camera = self._lie(seeds[0], 0).camera
+        self._begun = None  # a look at the picture's size is no reset
         self.observation_space = gymnasium.spaces.Dict({
             "pixels": gymnasium.spaces.Box(0, 255, (camera.height, camera.width, 3), np.uint8),
             "agent_pos": gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32),
@@ -100,10 +103,13 @@ class FoldingEnv(gymnasium.Env):
     def step(self, action: Any) -> tuple[dict[str, Any], float, bool, bool, dict[str, Any]]:
         """Fold once."""
         if self._begun is None:
-            raise gymnasium.error.ResetNeeded("call reset before step")
+            raise gymnasium.error.ResetNeeded("the episode is over or was not begun; call reset before step")
         numbers = np.asarray(action, np.float32)
         if numbers.shape != (8,) or not np.isfinite(numbers).all():
-            raise ConfigError("an action is 8 finite numbers from -1 to 1: pick and place of each arm, x and y")
+            raise ConfigError(
+                "an action is 8 finite numbers, of which those beyond -1 to 1 count as the end: pick and place of each "
+                "arm, x and y"
+            )
         numbers = np.clip(numbers, -1.0, 1.0)
         info: dict[str, Any] = {}
         try:
@@ -117,7 +123,10 @@ class FoldingEnv(gymnasium.Env):
             info |= {"iou": told.iou, "moved_part_mm": told.moved_part_error_mm}
         info["is_success"] = done
         self._count += 1
-        return self._observation(), float(done), done, not done and self._count >= self._most, info
+        observation, cut_off = self._observation(), not done and self._count >= self._most
+        if done or cut_off:
+            self._begun = None
+        return observation, float(done), done, cut_off, info
 
     def render(self) -> NDArray[np.uint8] | None:
         """What the camera sees."""

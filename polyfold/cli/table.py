@@ -36,6 +36,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print the table."""
     found = polyfold.open(arguments.out)
+    if not found.records:
+        raise ConfigError(f"no episode in {arguments.out} is finished; go on with 'polyfold evaluate' of its study")
     found = found.of_length(arguments.steps) if arguments.steps else found
     found = found.of_wordings(_numbers_in(arguments.wordings)) if arguments.wordings else found
     noise = None if arguments.noise_floor is None else polyfold.open(arguments.noise_floor)

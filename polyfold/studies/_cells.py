@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fnmatch
 import hashlib
 import itertools
 from collections.abc import Iterator, Sequence
@@ -76,13 +75,7 @@ def cells(study: Study) -> Iterator[Cell]:
 
 
 def _chosen_tasks(study: Study) -> list[Task | OpenTask]:
-    tasks = suite(study.suite).entries
-    for pattern in study.tasks:
-        if not any(fnmatch.fnmatch(task.id, pattern) for task in tasks):
-            raise ConfigError(
-                f"no task of {study.suite!r} matches {pattern!r}; {did_you_mean(pattern, [task.id for task in tasks])}"
-            )
-    chosen = [task for task in tasks if _is_chosen(study, task)]
+    chosen = [task for task in suite(study.suite).matching(study.tasks) if _is_chosen(study, task)]
     if not chosen:
         raise ConfigError(
             f"no task of {study.suite!r} is left by tasks={list(study.tasks)}, split={study.split!r} and "
@@ -92,8 +85,6 @@ def _chosen_tasks(study: Study) -> list[Task | OpenTask]:
 
 
 def _is_chosen(study: Study, task: Task | OpenTask) -> bool:
-    if not any(fnmatch.fnmatch(task.id, pattern) for pattern in study.tasks):
-        return False
     if isinstance(task, OpenTask):
         return study.split is None and study.steps is None
     return study.split in (None, task.split) and study.steps in (None, "single" if len(task.steps) == 1 else "multi")

@@ -19,7 +19,8 @@ def in_words(study: Study) -> str:
     kinds = Counter(cell.garment for cell in each)
     tasks = len({cell.task for cell in each})
     variants = list(study.variants)
-    named = ", ".join(variants[:NAMED]) + (f" and {len(variants) - NAMED} more" if len(variants) > NAMED else "")
+    between = "; " if any("," in variant for variant in variants) else ", "
+    named = between.join(variants[:NAMED]) + (f" and {len(variants) - NAMED} more" if len(variants) > NAMED else "")
     return "\n".join([
         f"study {study.name}: {_count(len(each) * len(variants), 'episode')}",
         f"{_count(len(variants), 'variant')}: {named}",

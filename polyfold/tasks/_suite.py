@@ -27,6 +27,7 @@ from __future__ import annotations
 import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from fnmatch import fnmatch
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
@@ -159,6 +160,18 @@ class Suite(BaseModel):
     def entry(self, entry_id: str) -> Task | OpenTask:
         """The task or open task of this id. Raises ConfigError with the nearest ids when there is none."""
         return _of_id(self.entries, entry_id, self.name)
+
+    def matching(self, patterns: Sequence[str]) -> tuple[Task | OpenTask, ...]:
+        """The entries whose ids match one of the patterns, such as ``square-corner-*``.
+
+        Raises:
+            ConfigError: with the nearest ids, if a pattern matches none.
+        """
+        for pattern in patterns:
+            if not any(fnmatch(entry.id, pattern) for entry in self.entries):
+                hint = did_you_mean(pattern, [entry.id for entry in self.entries])
+                raise ConfigError(f"no task of {self.name!r} matches {pattern!r}; {hint}")
+        return tuple(entry for entry in self.entries if any(fnmatch(entry.id, pattern) for pattern in patterns))
 
     def for_garment(self, kind: str) -> tuple[Task, ...]:
         """The tasks on garments of this garment kind."""

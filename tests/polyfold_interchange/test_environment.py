@@ -101,3 +101,16 @@ def test_numbers_are_actions_and_back():
             np.testing.assert_allclose(as_numbers(action, camera), numbers, atol=1e-6)
     one = as_action(as_numbers(as_action(np.tile(numbers[:4], 2), camera), camera), camera)
     assert one.arms == 1
+
+
+def test_a_fold_before_a_reset_or_after_the_end_is_refused(environment):
+    with FoldingEnv(max_folds=1, edge_length=0.03) as fresh, pytest.raises(gymnasium.error.ResetNeeded):
+        fresh.step(np.zeros(8))
+    environment.reset(seed=0)
+    for _ in range(10):
+        if any(environment.step(np.zeros(8))[2:4]):
+            break
+    with pytest.raises(gymnasium.error.ResetNeeded, match="over"):
+        environment.step(np.zeros(8))
+    with pytest.raises(ConfigError, match="rgb_array"):
+        FoldingEnv(render_mode="human")

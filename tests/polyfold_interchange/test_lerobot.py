@@ -114,5 +114,20 @@ def test_the_verb_folds_tasks_and_goes_on_where_it_was_stopped(tmp_path, monkeyp
     assert folded == [("square-triangle-top_left", 1000), *[("square-triangle-top_left", 1001)] * 2]
     assert "2 of 2 episodes" in capsys.readouterr().out
     assert not list(tmp_path.glob("data.parts*"))
+    assert main(arguments) == 0, "what is finished stays so"
+    assert "2 of 2 episodes" in capsys.readouterr().out
+    assert len(folded) == 3
+    assert main([*arguments, "--first-seed", "1005"]) != 0
+    assert "holds something else already" in capsys.readouterr().err
     assert main(["export", "--out", str(tmp_path / "x"), "--tasks", "square-triangl"]) != 0
     assert "did you mean" in capsys.readouterr().err
+
+
+def test_tasks_are_chosen_by_patterns_and_goals_have_no_folds_to_show():
+    from polyfold_interchange.command import _jobs
+
+    jobs = _jobs("polyfold70", "seen", ["square-corner-*_left"], 1000, 2)
+    assert {name for name, _ in jobs} == {"square-corner-bottom_left", "square-corner-top_left"}
+    assert len(jobs) == 4
+    with pytest.raises(ConfigError, match="leaves its folds open"):
+        _jobs("ambiguous", "seen", ["*"], 1000, 1)
