@@ -54,14 +54,13 @@ class Fidelity:
         if self.vouched:
             asked = "which was named" if self.reference == "task" else "which the sentence asks for"
             asked += f", although the sentence asks for {self.contradicted}" if self.contradicted else ""
-            quality = "" if math.isnan(self.quality) else f", quality {self.quality:.0f} of 100"
-            return f"{self.verdict or 'compared'}: {self.figures()}{quality}; beside the ideal {task}, {asked}"
+            return f"{self.verdict or 'compared'}: {self.figures()}; beside the ideal {task}, {asked}"
         if self.reference == "outline":
             return (
                 f"{self.figures()}, beside the outline seen first folded along the planned lines; nobody measured "
                 "the cloth itself: look at the picture"
             )
-        ended = "not as planned" if self.verdict == "bad" else "as planned"
+        ended = {"bad": "not as planned", "fair": "roughly as planned"}.get(self.verdict or "", "as planned")
         if self.reference == "recognised":
             return (
                 f"{ended}: {self.figures()}, beside the ideal {task}, whose lines the plan has; nothing vouches for "
@@ -75,4 +74,6 @@ class Fidelity:
     def figures(self) -> str:
         """How near it came, in figures alone."""
         moved = self.moved_part_error_mm
-        return f"IoU {self.iou:.3f}" + ("" if math.isnan(moved) else f", moved part off by {moved:.1f} mm")
+        off = "" if math.isnan(moved) else f", moved part off by {moved:.1f} mm"
+        quality = "" if math.isnan(self.quality) else f", quality {self.quality:.0f} of 100"
+        return f"IoU {self.iou:.3f}{off}{quality}"
