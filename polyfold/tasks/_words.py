@@ -27,6 +27,8 @@ def _named(point: Place) -> str:
     if len(names) == 1:
         return names[0]
     shares = list(point.values())
+    if max(shares) - min(shares) < 0.01 and len(names) > 3:
+        return "the centre"
     if max(shares) - min(shares) < 0.01:
         return f"the middle of {', '.join(names[:-1])} and {names[-1]}"
     if len(names) == 2:

@@ -58,7 +58,7 @@ def test_another_sentence_about_the_same_cloth_is_another_fold(fitted, demonstra
     row, weights = fitted
     network = load(weights, row.row, row.network).network
     learned, _ = make_examples(Demos.read(demonstrated), 40.0)
-    starts = ("fold bottom left onto the middle", "fold top left onto bottom right")
+    starts = ("fold bottom left onto the centre", "fold top left onto bottom right")
     on_square = [next(k for k, text in enumerate(learned.texts) if text.startswith(start)) for start in starts]
     cloth = learned.frames[[int(np.flatnonzero(learned.sentences == on_square[0])[0])] * 2, 0]
     with torch.inference_mode():
