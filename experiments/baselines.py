@@ -36,15 +36,14 @@ def _demos(name: str, minutes: int, *options: str) -> Step:
 
 
 def _fit(name: str, minutes: int, demos: str, passes: int, *options: str) -> Step:
-    row = name.removesuffix("-2arm")
-    command = ("fit", row, "--demos", f"{{out}}/{demos}", "--passes", str(passes), *options)
+    command = ("fit", name, "--demos", f"{{out}}/{demos}", "--passes", str(passes), *options)
     return Step(name, minutes, command, ("--passes", str(20 * passes), "--device", "cuda"))
 
 
 STEPS = (
     _demos("demos-1arm", 15, "--arms", "1", "--garments", "20", "--workers", "2"),
     _demos("demos-2arm", 15, "--arms", "2", "--garments", "20", "--workers", "2"),
-    _demos("drags", 150, "--agent", "random-drags", "--arms", "1", "--garments", "100", "--workers", "2"),
+    _demos("drags", 60, "--agent", "random-drags", "--arms", "1", "--garments", "40", "--workers", "2"),
     _fit("bifold", 25, "demos-2arm", 100_000),
     _fit("ltf", 40, "drags", 300_000),
     _fit("vcd", 60, "drags", 200_000),

@@ -16,7 +16,9 @@ def register_agents(register):
     register("vcd", f"{agents}.vcd:Vcd", "tries drags in a learned model of what is seen of the cloth", TORCH)
     register("wang", f"{agents}.wang:Wang", "search in a simulator for a pick at a corner of a simplified mesh")
     register("foldsformer", f"{agents}.foldsformer:Foldsformer", "goal pictures to heatmaps by attention", TORCH)
+    register("foldsformer-2arm", f"{agents}.foldsformer:Foldsformer2Arm", "the same with two arms", TORCH)
     register("langdef", f"{agents}.langdef:LangDef", "a sentence, depth and a graph to picks at its nodes", BASELINES)
+    register("langdef-2arm", f"{agents}.langdef:LangDef2Arm", "the same with two arms", BASELINES)
     register("bifold", f"{agents}.bifold:BiFold", "a sentence and the cloth to heatmaps", BASELINES)
 
 

@@ -7,7 +7,7 @@ import pytest
 import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from polyfold_baselines.agents.foldsformer import Foldsformer
+from polyfold_baselines.agents.foldsformer import Foldsformer, Foldsformer2Arm
 from polyfold_baselines.demos.window import SIDE
 from polyfold_baselines.learning import fitting, learner
 from polyfold_baselines.learning.fitting import FitConfig, fit
@@ -74,13 +74,13 @@ def test_what_is_turned_and_moved_takes_its_points_along(seed, x, y):
 @pytest.fixture(scope="module")
 def overfitted(demonstrated, tmp_path_factory):
     out = tmp_path_factory.mktemp("fit")
-    config = FitConfig(row="foldsformer", demos=str(demonstrated), passes=1200, learning_rate=2e-3, **SMALL)
-    before = fit(config.model_copy(update={"passes": 8}), Foldsformer, tmp_path_factory.mktemp("b"), progress=False)
-    return before, fit(config, Foldsformer, out, progress=False)
+    config = FitConfig(row="foldsformer-2arm", demos=str(demonstrated), passes=1200, learning_rate=2e-3, **SMALL)
+    before = fit(config.model_copy(update={"passes": 8}), Foldsformer2Arm, tmp_path_factory.mktemp("b"), progress=False)
+    return before, fit(config, Foldsformer2Arm, out, progress=False)
 
 
 def test_it_learns_where_to_pick(overfitted):
-    before, after = (load(path, "foldsformer", Foldsformer.network) for path in overfitted)
+    before, after = (load(path, "foldsformer-2arm", Foldsformer2Arm.network) for path in overfitted)
     assert after.measured["pick_error_px"] < 0.75 * before.measured["pick_error_px"]
     assert after.measured["held_out_loss"] < before.measured["held_out_loss"] - 1.0
     assert after.config["demos"] == before.config["demos"]
@@ -91,7 +91,7 @@ def test_it_folds_in_a_study_cell(overfitted):
     import polyfold
     from polyfold.api import attempt
 
-    experiment = polyfold.Experiment.of(agent={"name": "foldsformer", "weights": str(overfitted[1])})
+    experiment = polyfold.Experiment.of(agent={"name": "foldsformer-2arm", "weights": str(overfitted[1])})
     cloth = polyfold.garment("square", seed=1001, edge_length=0.022)
     episode = attempt("", cloth, 1001, experiment, task="square-corner-bottom_left")
     assert len(episode.steps) == 1
@@ -101,8 +101,8 @@ def test_it_folds_in_a_study_cell(overfitted):
 
 def test_a_killed_training_goes_on_to_the_same_weights(demonstrated, tmp_path, monkeypatch):
     monkeypatch.setattr(learner, "LOOK", 2)
-    config = FitConfig(row="foldsformer", demos=str(demonstrated), passes=48, **SMALL)
-    straight = fit(config, Foldsformer, tmp_path / "straight", progress=False)
+    config = FitConfig(row="foldsformer-2arm", demos=str(demonstrated), passes=48, **SMALL)
+    straight = fit(config, Foldsformer2Arm, tmp_path / "straight", progress=False)
     step = learner.Learner._step
 
     def interrupted(learning, number):
@@ -113,12 +113,14 @@ def test_a_killed_training_goes_on_to_the_same_weights(demonstrated, tmp_path, m
     with monkeypatch.context() as patch:
         patch.setattr(learner.Learner, "_step", interrupted)
         with pytest.raises(KeyboardInterrupt):
-            fit(config, Foldsformer, tmp_path / "killed", progress=False)
-    resumed = fit(config, Foldsformer, tmp_path / "killed", progress=False)
-    one, other = (load(path, "foldsformer", Foldsformer.network).network.state_dict() for path in (straight, resumed))
+            fit(config, Foldsformer2Arm, tmp_path / "killed", progress=False)
+    resumed = fit(config, Foldsformer2Arm, tmp_path / "killed", progress=False)
+    one, other = (
+        load(path, "foldsformer-2arm", Foldsformer2Arm.network).network.state_dict() for path in (straight, resumed)
+    )
     assert all(torch.equal(one[name], other[name]) for name in one)
     with pytest.raises(ConfigError, match="another training"):
-        fit(config.model_copy(update={"seed": 1}), Foldsformer, tmp_path / "killed", progress=False)
+        fit(config.model_copy(update={"seed": 1}), Foldsformer2Arm, tmp_path / "killed", progress=False)
     lines = (tmp_path / "killed" / "metrics.jsonl").read_text().splitlines()
     assert [json.loads(line)["passes"] for line in lines] == [16, 32, 48]
 
@@ -128,10 +130,28 @@ def test_weights_that_were_changed_or_are_another_rows_are_refused(overfitted, t
     content[-3] ^= 1
     (tmp_path / "changed.safetensors").write_bytes(content)
     with pytest.raises(ConfigError, match="was changed"):
-        load(tmp_path / "changed.safetensors", "foldsformer", Foldsformer.network)
+        load(tmp_path / "changed.safetensors", "foldsformer-2arm", Foldsformer2Arm.network)
     with pytest.raises(ConfigError, match="not of langdef"):
-        load(overfitted[1], "langdef", Foldsformer.network)
+        load(overfitted[1], "langdef", Foldsformer2Arm.network)
+    segmenter = plugins.create("segmenters", "colour")
     with pytest.raises(ConfigError, match="polyfold fit foldsformer"):
-        plugins.create(
-            "agents", "foldsformer", {"weights": tmp_path / "none"}, segmenter=plugins.create("segmenters", "colour")
-        )
+        plugins.create("agents", "foldsformer", {"weights": tmp_path / "none"}, segmenter=segmenter)
+
+
+def test_a_row_takes_its_own_weights_from_the_package_and_says_where_there_are_none(overfitted, tmp_path, monkeypatch):
+    from polyfold_baselines.agents import imitation
+
+    segmenter = plugins.create("segmenters", "colour")
+    package = tmp_path / "package"
+    monkeypatch.setattr(imitation, "__file__", str(package / "agents" / "imitation.py"))
+    with pytest.raises(ConfigError, match="come with the package; make them with 'polyfold fit foldsformer-2arm'"):
+        plugins.create("agents", "foldsformer-2arm", {}, segmenter=segmenter)
+    (package / "weights").mkdir(parents=True)
+    (package / "weights" / "foldsformer-2arm.safetensors").write_bytes(overfitted[1].read_bytes())
+    assert plugins.create("agents", "foldsformer-2arm", {}, segmenter=segmenter)
+
+
+def test_demonstrations_with_other_arms_than_a_row_has_are_refused(demonstrated, tmp_path):
+    config = FitConfig(row="foldsformer", demos=str(demonstrated), passes=8, **SMALL)
+    with pytest.raises(ConfigError, match=r"folds with 1 arm, and .* have 2; make some with 'polyfold demos --arms 1'"):
+        fit(config, Foldsformer, tmp_path / "one", progress=False)

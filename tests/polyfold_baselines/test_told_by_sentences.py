@@ -5,7 +5,7 @@ import pytest
 import torch
 from polyfold_baselines.agents.bifold import BiFold
 from polyfold_baselines.agents.goals import InTurn
-from polyfold_baselines.agents.langdef import LangDef
+from polyfold_baselines.agents.langdef import LangDef2Arm
 from polyfold_baselines.learning.fitting import FitConfig, fit
 from polyfold_baselines.learning.weights import load
 
@@ -44,7 +44,7 @@ def test_what_is_told_last_holds_for_the_folds_that_are_left():
     assert (told.final, final.final) == (False, True)
 
 
-@pytest.fixture(scope="module", params=[(BiFold, 640), (LangDef, 1200)], ids=["bifold", "langdef"])
+@pytest.fixture(scope="module", params=[(BiFold, 640), (LangDef2Arm, 1200)], ids=["bifold", "langdef-2arm"])
 def fitted(request, demonstrated, tmp_path_factory):
     row, passes = request.param
     config = FitConfig(row=row.row, demos=str(demonstrated), passes=passes, learning_rate=3e-3, **SMALL)

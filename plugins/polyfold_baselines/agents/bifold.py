@@ -24,6 +24,7 @@ class BiFold(SentenceImitation):
     """A U-Net that a sentence modulates, to heatmaps."""
 
     row: ClassVar[str] = "bifold"
+    arms: ClassVar[int] = 2
 
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Network:

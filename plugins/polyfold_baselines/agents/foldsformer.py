@@ -26,6 +26,7 @@ class Foldsformer(PictureImitation):
     """Space-time attention to heatmaps."""
 
     row: ClassVar[str] = "foldsformer"
+    arms: ClassVar[int] = 1
 
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Network:
@@ -33,3 +34,10 @@ class Foldsformer(PictureImitation):
         from polyfold_baselines.learning.networks.spacetime import SpaceTime
 
         return SpaceTime(config["arms"], config["width"], config["depth"])
+
+
+class Foldsformer2Arm(Foldsformer):
+    """Space-time attention to heatmaps of two arms."""
+
+    row: ClassVar[str] = "foldsformer-2arm"
+    arms: ClassVar[int] = 2

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from polyfold.errors import ConfigError
 from polyfold.plugins.interfaces import Goal, Segmenter
 from polyfold.types import Action, Decision, Observation, Subgoal
 from polyfold_baselines.agents.goals import GoalPictures, InTurn, seen_through
@@ -31,7 +32,9 @@ class ImitationConfig(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    weights: Path = Field(description="file of `polyfold fit`")
+    weights: Path | None = Field(
+        default=None, description="file of `polyfold fit`; by default what comes with the package"
+    )
 
 
 class Imitation(ABC):
@@ -41,6 +44,7 @@ class Imitation(ABC):
     """
 
     row: ClassVar[str]
+    arms: ClassVar[int]
     guide: ClassVar[str]
     requires: ClassVar[frozenset[str]]
     uses: ClassVar[tuple[str, ...]] = ("segmenter",)
@@ -48,13 +52,13 @@ class Imitation(ABC):
     _window: Window
 
     def __init__(self, config: ImitationConfig, segmenter: Segmenter) -> None:
-        self._weights = read_weights(type(self), config.weights)
+        self._weights = read_weights(type(self), config)
         self._segmenter = segmenter
 
     @classmethod
     def files_read(cls, config: ImitationConfig) -> list[Path]:
         """The file of its weights."""
-        return [config.weights]
+        return [weights_file(cls, config)]
 
     @classmethod
     @abstractmethod
@@ -138,8 +142,22 @@ class Learned(Protocol):
         ...
 
 
-def read_weights(cls: type[Learned], path: Path) -> Weights:
+def weights_file(cls: type[Learned], config: ImitationConfig) -> Path:
+    """The file that is named, else the row's own that comes with the package. Raises ConfigError if none does."""
+    if config.weights is not None:
+        return config.weights
+    shipped = Path(__file__).parents[1] / "weights" / f"{cls.row}.safetensors"
+    if not shipped.is_file():
+        raise ConfigError(
+            f"no weights of {cls.row} come with the package; make them with 'polyfold fit {cls.row}', and name their "
+            "file: weights=FILE"
+        )
+    return shipped
+
+
+def read_weights(cls: type[Learned], config: ImitationConfig) -> Weights:
     """The weights of a file, read once until it changes. Raises ConfigError if they are not this row's."""
+    path = weights_file(cls, config)
     stamp = (path.stat().st_mtime_ns, path.stat().st_size) if path.is_file() else (0, 0)
     return _read(cls, path.resolve(), stamp)
 

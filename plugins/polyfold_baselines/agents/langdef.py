@@ -27,6 +27,7 @@ class LangDef(SentenceImitation):
     """A transformer over words, patches and nodes."""
 
     row: ClassVar[str] = "langdef"
+    arms: ClassVar[int] = 1
 
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Network:
@@ -34,3 +35,10 @@ class LangDef(SentenceImitation):
         from polyfold_baselines.learning.networks.language import LanguageGraph
 
         return LanguageGraph(config["arms"], config["width"], config["depth"])
+
+
+class LangDef2Arm(LangDef):
+    """A transformer over words, patches and nodes, for two arms."""
+
+    row: ClassVar[str] = "langdef-2arm"
+    arms: ClassVar[int] = 2

@@ -26,6 +26,7 @@ class LearningToFold(PictureImitation):
     """The drag of the highest value."""
 
     row: ClassVar[str] = "ltf"
+    arms: ClassVar[int] = 1
 
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Network:

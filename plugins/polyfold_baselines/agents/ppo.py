@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 from polyfold.plugins.interfaces import Goal, Segmenter
 from polyfold.types import Decision, Observation, Subgoal
 from polyfold_baselines.agents.goals import InTurn
-from polyfold_baselines.agents.imitation import ImitationConfig, read_weights
+from polyfold_baselines.agents.imitation import ImitationConfig, read_weights, weights_file
 from polyfold_baselines.demos.window import Window
 
 
@@ -32,13 +32,13 @@ class Ppo:
     Config: ClassVar[type[ImitationConfig]] = ImitationConfig
 
     def __init__(self, config: ImitationConfig, segmenter: Segmenter) -> None:
-        self._policy: Any = read_weights(type(self), config.weights).network
+        self._policy: Any = read_weights(type(self), config).network
         self._segmenter = segmenter
 
     @classmethod
     def files_read(cls, config: ImitationConfig) -> list[Path]:
         """The file of its weights."""
-        return [config.weights]
+        return [weights_file(cls, config)]
 
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> Any:

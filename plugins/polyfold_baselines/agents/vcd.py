@@ -27,7 +27,7 @@ from pydantic import Field
 from polyfold.plugins.interfaces import Goal, Segmenter
 from polyfold.types import Action, Decision, Observation, Subgoal
 from polyfold_baselines.agents.goals import GoalPictures
-from polyfold_baselines.agents.imitation import ImitationConfig, read_weights
+from polyfold_baselines.agents.imitation import ImitationConfig, read_weights, weights_file
 from polyfold_baselines.agents.shooting import best_drag
 from polyfold_baselines.demos.window import in_view, on_cloth, on_table
 from polyfold_baselines.learning.dynamics.graphs import nodes_of
@@ -56,12 +56,12 @@ class Vcd:
 
     def __init__(self, config: Config, segmenter: Segmenter) -> None:
         self._config, self._segmenter = config, segmenter
-        self._model: VisibleDynamics = read_weights(type(self), config.weights).network
+        self._model: VisibleDynamics = read_weights(type(self), config).network
 
     @classmethod
     def files_read(cls, config: Config) -> list[Path]:
         """The file of its weights."""
-        return [config.weights]
+        return [weights_file(cls, config)]
 
     @classmethod
     def network(cls, config: Mapping[str, Any]) -> VisibleDynamics:

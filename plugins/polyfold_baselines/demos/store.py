@@ -111,6 +111,15 @@ class Demos:
         columns["end"] = np.repeat(np.cumsum(lengths) - 1, lengths)
         return cls(DemoPlan(**told["plan"]), told["hash"], columns, path)
 
+    def with_arms(self, row: str, arms: int) -> Demos:
+        """These demonstrations. Raises ConfigError if they have other arms than the row that is to learn from them."""
+        if self.plan.arms != arms:
+            raise ConfigError(
+                f"{row} folds with {arms} arm{'s' * (arms > 1)}, and the demonstrations in {self.path} have "
+                f"{self.plan.arms}; make some with 'polyfold demos --arms {arms}', or choose another baseline"
+            )
+        return self
+
     def __len__(self) -> int:
         return len(self.columns["step"])
 

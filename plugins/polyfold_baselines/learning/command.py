@@ -13,9 +13,11 @@ if TYPE_CHECKING:
 
 ROWS = {
     "foldsformer": "polyfold_baselines.agents.foldsformer:Foldsformer",
+    "foldsformer-2arm": "polyfold_baselines.agents.foldsformer:Foldsformer2Arm",
     "bifold": "polyfold_baselines.agents.bifold:BiFold",
     "ltf": "polyfold_baselines.agents.ltf:LearningToFold",
     "langdef": "polyfold_baselines.agents.langdef:LangDef",
+    "langdef-2arm": "polyfold_baselines.agents.langdef:LangDef2Arm",
 }
 """Baselines that learn heatmaps or values from demonstrations or drags."""
 BY_DRAGGING = {"vcd": "polyfold_baselines.agents.vcd:Vcd"}

@@ -28,6 +28,7 @@ class Row(Protocol):
     """A baseline that is trained so; its agent's class."""
 
     row: ClassVar[str]
+    arms: ClassVar[int]
     guide: ClassVar[str]
 
     @classmethod
@@ -56,7 +57,7 @@ def fit(config: FitConfig, row: type[Row], out: Path, device: str = "auto", prog
     Raises:
         ConfigError: if the folder holds another training or is in use, or the demonstrations teach nothing.
     """
-    demos = Demos.read(config.demos)
+    demos = Demos.read(config.demos).with_arms(row.row, row.arms)
     note = {**config.model_dump(exclude={"demos"}), "demos": demos.hash, "arms": demos.plan.arms}
     return learn(lambda: _Heatmaps(config, row, note, demos, device), note, out, progress)
 
