@@ -18,7 +18,7 @@ import pluggy
 from polyfold.errors import ConfigError, PluginError, did_you_mean, validation_problem
 from polyfold.errors._hints import misplaced_truth
 from polyfold.plugins import hookspecs
-from polyfold.plugins._border import faultless, guarded
+from polyfold.plugins._border import constructed, guarded
 from polyfold.plugins._calling import call, implementations
 from polyfold.plugins._observation import Observers
 from polyfold.plugins._registry.carrying import packed, unpacked
@@ -210,7 +210,7 @@ class Host:
         by_hand = (kind, name) in self._by_hand
         home = "that was registered by hand" if by_hand else f"of the plugin {self.find(kind, name).plugin.label}"
         owner = f"the {singular(kind)} {name!r} {home}"
-        made = faultless(lambda: cls(**components) if config is None else cls(config, **components), owner)
+        made = constructed(cls, [] if config is None else [config], components, owner)
         return guarded(made, kind, owner)
 
     def create_chosen(self, experiment: Experiment, field: str) -> Any:
