@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import reprlib
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from polyfold.errors import PlanError
 from polyfold.geometry import _plane as geometry
 
 Floats = NDArray[np.float64]
@@ -19,16 +23,27 @@ class FoldLine:
     Attributes:
         start: x and y where it begins [px].
         end: x and y where it ends [px].
+
+    Raises:
+        PlanError: if one is no finite pixel, or both are the same.
     """
 
     start: tuple[float, float]
     end: tuple[float, float]
 
+    def __post_init__(self) -> None:
+        for name in ("start", "end"):
+            object.__setattr__(self, name, _pixel(getattr(self, name), name))
+        if self.start == self.end:
+            x, y = self.start
+            raise PlanError(
+                f"a fold line goes from one pixel to another, and both are ({x:g}, {y:g}); choose two points apart"
+            )
+
     @classmethod
     def between(cls, start: ArrayLike, end: ArrayLike) -> FoldLine:
         """The line from one point to another [px], each of shape (2,)."""
-        (x0, y0), (x1, y1) = np.asarray(start, float), np.asarray(end, float)
-        return cls((float(x0), float(y0)), (float(x1), float(y1)))
+        return cls(_pixel(start, "start"), _pixel(end, "end"))
 
     @classmethod
     def moving(cls, pick: ArrayLike, place: ArrayLike) -> FoldLine:
@@ -66,3 +81,15 @@ class FoldLine:
     def reversed(self) -> FoldLine:
         """The same line with the other side lifted."""
         return FoldLine(self.end, self.start)
+
+
+def _pixel(point: Any, name: str) -> tuple[float, float]:
+    try:
+        x, y = (float(coordinate) for coordinate in point)
+    except (TypeError, ValueError):
+        raise PlanError(
+            f"the {name} of a fold line is a pixel (x, y), not {reprlib.repr(point)}; give two numbers"
+        ) from None
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise PlanError(f"the {name} of a fold line is a finite pixel (x, y), not ({x:g}, {y:g}); give two numbers")
+    return x, y

@@ -125,11 +125,12 @@ def generate_garment(
 
     Raises:
         PluginError: if there is no such kind or fabric.
-        ConfigError: if a constant of the fabric is unknown or not plausible.
+        ConfigError: if the seed is no whole number, or a constant of the fabric is unknown or not plausible.
         GarmentError: if the size is not one that two arms fold.
     """
-    from polyfold.config import Experiment
+    from polyfold.config import Experiment, checked_seed
 
+    seed = checked_seed(seed)
     generator = HOST.create("garments", garment_kind)
     garment = generator.generate(seed) if edge_length is None else generator.generate(seed, edge_length)
     if size is not None:
