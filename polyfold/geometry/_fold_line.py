@@ -33,7 +33,7 @@ class FoldLine:
 
     def __post_init__(self) -> None:
         for name in ("start", "end"):
-            object.__setattr__(self, name, _pixel(getattr(self, name), name))
+            object.__setattr__(self, name, _pixel(getattr(self, name), f"the {name}"))
         if self.start == self.end:
             x, y = self.start
             raise PlanError(
@@ -43,12 +43,22 @@ class FoldLine:
     @classmethod
     def between(cls, start: ArrayLike, end: ArrayLike) -> FoldLine:
         """The line from one point to another [px], each of shape (2,)."""
-        return cls(_pixel(start, "start"), _pixel(end, "end"))
+        return cls(_pixel(start, "the start"), _pixel(end, "the end"))
 
     @classmethod
     def moving(cls, pick: ArrayLike, place: ArrayLike) -> FoldLine:
-        """The line that carries ``pick`` onto ``place`` [px], each of shape (2,): their perpendicular bisector."""
-        return cls.between(*geometry.perpendicular_bisector(pick, place))
+        """The line that carries ``pick`` onto ``place`` [px], each of shape (2,): their perpendicular bisector.
+
+        Raises:
+            PlanError: if one is no finite pixel, or both are the same.
+        """
+        start, end = _pixel(pick, "the pick"), _pixel(place, "the place")
+        if start == end:
+            raise PlanError(
+                f"pick and place are both at ({start[0]:g}, {start[1]:g}), so no line lies between them; "
+                "choose two points apart"
+            )
+        return cls.between(*geometry.perpendicular_bisector(start, end))
 
     @property
     def length(self) -> float:
@@ -88,8 +98,8 @@ def _pixel(point: Any, name: str) -> tuple[float, float]:
         x, y = (float(coordinate) for coordinate in point)
     except (TypeError, ValueError):
         raise PlanError(
-            f"the {name} of a fold line is a pixel (x, y), not {reprlib.repr(point)}; give two numbers"
+            f"{name} of a fold line is a pixel (x, y), not {reprlib.repr(point)}; give two numbers"
         ) from None
     if not (math.isfinite(x) and math.isfinite(y)):
-        raise PlanError(f"the {name} of a fold line is a finite pixel (x, y), not ({x:g}, {y:g}); give two numbers")
+        raise PlanError(f"{name} of a fold line is a finite pixel (x, y), not ({x:g}, {y:g}); give two numbers")
     return x, y

@@ -6,6 +6,7 @@ from polyfold_interchange import write_dataset
 
 import polyfold
 from polyfold.errors import ConfigError, GarmentError, PolyfoldError
+from polyfold.rollout import run_episode
 
 
 @pytest.mark.parametrize(
@@ -32,6 +33,9 @@ def test_it_is_told_what_to_give(call, told, tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir()), "nothing is made for it"
 
 
+SQUARE = polyfold.garment("square", edge_length=0.05)
+
+
 @pytest.mark.parametrize("seed", [-1, 1.5, "a", None, True, 2**63])
 @pytest.mark.parametrize(
     "call",
@@ -40,6 +44,7 @@ def test_it_is_told_what_to_give(call, told, tmp_path, monkeypatch):
         lambda seed: polyfold.fold("fold it in half", "square", seed),
         lambda seed: polyfold.play("square", seed),
         lambda seed: polyfold.plugins.generate_garment("square", seed),
+        lambda seed: run_episode(polyfold.Experiment(), SQUARE, "fold it in half", seed),
     ],
 )
 def test_a_seed_is_a_whole_number_wherever_it_is_given(call, seed):

@@ -41,6 +41,13 @@ def test_what_is_no_line_is_refused_when_it_is_made(make, start, end, says):
         make(start, end)
 
 
+def test_nothing_is_carried_from_where_it_lies_to_the_same_place():
+    with pytest.raises(PlanError, match=r"pick and place are both at \(5, 6\), so no line lies between them"):
+        FoldLine.moving((5, 6), [5.0, 6.0])
+    with pytest.raises(PlanError, match=r"the place of a fold line is a pixel \(x, y\), not None"):
+        FoldLine.moving((5, 6), None)
+
+
 def test_a_line_of_numpy_s_numbers_is_the_line_of_python_s():
     line = FoldLine(np.array([1, 2]), np.float32([3.5, 4]))
     assert line == FoldLine((1.0, 2.0), (3.5, 4.0))
@@ -77,8 +84,6 @@ def test_moving_line_carries_pick_onto_place_and_lifts_it(pick, place):
 def test_coinciding_points_are_refused():
     with pytest.raises(ValueError, match="coincide"):
         geometry.signed_distance([(0, 0)], (1, 1), (1, 1))
-    with pytest.raises(ValueError, match="coincide"):
-        FoldLine.moving((1, 1), (1, 1))
 
 
 @given(cloud, st.floats(-7, 7), point)
