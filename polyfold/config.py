@@ -3,19 +3,50 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
+from operator import index
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    ModelWrapValidatorHandler,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from polyfold.errors import ConfigError, validation_problem
-from polyfold.errors._hints import file_problem, toml_problem
+from polyfold.errors._hints import file_problem, misplaced_truth, toml_problem, whole_number_problem
 
 __all__ = ["ComponentSpec", "Experiment", "read_toml"]
 
 USUAL = "usual"
 """Stands for the fabric that a kind of garment is usually made of; no component is called so."""
+
+
+class Settings(BaseModel):
+    """Settings that answer a wrong one with a ConfigError which says what to do, however they are given.
+
+    Keywords have no source to name; ``model_validate(settings, context={"source": "study.toml"})`` names theirs.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _answered(cls, given: Any, validate: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+        source = (info.context or {}).get("source", f"the {cls.__name__.lower()}")
+        if isinstance(given, Mapping) and (wrong := misplaced_truth(given, cls.model_fields)):
+            raise ConfigError(f"{source} {wrong}")
+        try:
+            return validate(given)
+        except ValidationError as error:
+            raise ConfigError(f"{source} {validation_problem(error, cls.model_fields)}") from error
 
 
 class ComponentSpec(BaseModel):
@@ -64,10 +95,8 @@ def _with(table: dict[str, Any], path: list[str], value: Any, owner: str) -> dic
     return {**table, name: _with(there, inner, value, owner)}
 
 
-class Experiment(BaseModel):
+class Experiment(Settings):
     """Which components an episode is made of. Every field has a default that needs no key and no GPU."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     agent: ComponentSpec = ComponentSpec(name="polyfold")
     simulator: ComponentSpec = ComponentSpec(name="xpbd")
@@ -93,12 +122,12 @@ class Experiment(BaseModel):
         Raises:
             ConfigError: naming the setting that is unknown or wrong.
         """
-        return _validated(settings, "the experiment")
+        return cls(**settings)
 
     @classmethod
     def load(cls, path: str | Path) -> Experiment:
         """Read an experiment from a TOML file. Raises ConfigError with the file and the wrong line or setting."""
-        return _validated(read_toml(path), str(path))
+        return cls.model_validate(read_toml(path), context={"source": str(path)})
 
     def override(self, settings: dict[str, str | dict[str, Any] | ComponentSpec]) -> Experiment:
         """A copy with some components replaced."""
@@ -120,8 +149,8 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         raise ConfigError(f"{path} {toml_problem(error, text)}") from error
 
 
-def _validated(settings: dict[str, Any], source: str) -> Experiment:
-    try:
-        return Experiment(**settings)
-    except ValidationError as error:
-        raise ConfigError(f"{source} {validation_problem(error, Experiment.model_fields)}") from error
+def checked_seed(seed: object) -> int:
+    """A seed as Python's own whole number. Raises ConfigError for what is none, as ``--seed`` is answered."""
+    if problem := whole_number_problem(seed):
+        raise ConfigError(f"seed: {problem}")
+    return index(seed)  # pyright: ignore[reportArgumentType]

@@ -17,7 +17,12 @@ def prompt_for(scene: Scene, role: str, version: str) -> Prompt:
     """
     if scene.shown == ("polygon",):
         return load_prompt(role, version)
-    return load_prompt(role, f"{'-'.join(scene.shown)}-{version}")
+    shown = "-".join(scene.shown)
+    try:
+        return load_prompt(role, f"{shown}-{version}")
+    except ConfigError as error:
+        maker = scene.grounding or "the grounding"
+        raise ConfigError(f"{maker} says that its scene shows {shown} (scene.shown), and {error}") from error
 
 
 def prompts_for_scenes(role: str, version: str) -> list[str]:

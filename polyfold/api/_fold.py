@@ -11,7 +11,7 @@ from typing import Any
 
 from polyfold import plugins
 from polyfold.api._loaders import garment as named_garment
-from polyfold.config import USUAL, ComponentSpec, Experiment
+from polyfold.config import USUAL, ComponentSpec, Experiment, checked_seed
 from polyfold.errors import ConfigError
 from polyfold.evaluation import judge
 from polyfold.evaluation._suites import find_task
@@ -57,9 +57,10 @@ def fold(
 
     Raises:
         RefusedError: if the instruction can't be understood or done; nothing is folded.
+        ConfigError: if the seed is no whole number, or a setting is wrong.
         PolyfoldError: if grounding, planning or simulation fail; ``out`` then holds what was done until then.
     """
-    instruction = plain(instruction)  # before a folder is made for what is no text
+    instruction, seed = plain(instruction), checked_seed(seed)  # before a folder is made for what is neither
     experiment = (experiment or Experiment()).override(components)
     garment = garment_for(experiment, garment, seed)
     recorded = None if out is None else _Film()

@@ -17,12 +17,12 @@ from polyfold.api._doubts import DOUBTFUL, confidence, doubts
 from polyfold.api._looks import colours_in
 from polyfold.api._photos import framed as framed_photo
 from polyfold.api._photos import look
-from polyfold.config import ComponentSpec, Experiment
+from polyfold.config import ComponentSpec, Experiment, checked_seed
 from polyfold.errors import GarmentError
 from polyfold.garments import Garment, Pattern
 from polyfold.garments._obj import load_obj
 from polyfold.garments._outline_files import load_mask, load_outline, load_picture
-from polyfold.garments._twin import angle_of, twin_from_outline, upright_size
+from polyfold.garments._twin import angle_of, repair_outline, twin_from_outline, upright_size
 from polyfold.geometry import Camera, contour_of
 from polyfold.geometry._masks import fill_polygon
 from polyfold.geometry._rectified import Rectified
@@ -110,8 +110,9 @@ def garment(
         GarmentError: if a file can't be used, or more than one source is given.
         GroundingError: if the outline can't be explained as this kind.
         PluginError: if no plugin provides the kind or the fabric.
-        ConfigError: if a constant of the fabric is unknown or not plausible.
+        ConfigError: if the seed is no whole number, or a constant of the fabric is unknown or not plausible.
     """
+    seed = checked_seed(seed)
     experiment = experiment or Experiment()
     if fabric is not None:
         experiment = experiment.override({"fabric": fabric})
@@ -245,12 +246,34 @@ def _size(kind: str, outline: Floats, keypoints: Mapping[str, Floats]) -> float:
 def outline_of(*, mask: str | Path | ArrayLike | None = None, outline: str | Path | ArrayLike | None = None) -> Floats:
     """The silhouette [px], shape (N, 2), of a mask or outline."""
     if outline is not None:
-        points: Any = load_outline(outline) if isinstance(outline, str | Path) else outline
-        return np.asarray(points, float)
+        return load_outline(outline) if isinstance(outline, str | Path) else _checked_outline(outline)
     if mask is None:
         raise GarmentError("give a mask, an outline or an image of the garment")
-    pixels: Any = load_mask(mask) if isinstance(mask, str | Path) else mask
-    return contour_of(np.asarray(pixels, bool))
+    return contour_of(load_mask(mask) if isinstance(mask, str | Path) else _checked_mask(mask))
+
+
+def _checked_outline(outline: ArrayLike) -> Floats:
+    try:
+        points = np.asarray(outline, float)
+    except (TypeError, ValueError) as error:
+        raise GarmentError(f"an outline is an array of pixels (x, y), shape (N, 2), and not so ({error})") from error
+    repair_outline(points)
+    return points
+
+
+def _checked_mask(mask: ArrayLike) -> NDArray[np.bool_]:
+    pixels = np.asarray(mask)
+    if pixels.ndim != 2 or pixels.dtype.kind not in "buif":
+        raise GarmentError(
+            f"a mask is an array of shape (H, W), True where the cloth is, and not of {pixels.dtype}, shape "
+            f"{pixels.shape}; of a picture give one channel, compared with a threshold"
+        )
+    found = np.nan_to_num(pixels, nan=0).astype(bool)
+    if not found.any() or found.all():
+        raise GarmentError(
+            f"the mask is {'full' if found.any() else 'empty'}; give one that is True where the cloth is"
+        )
+    return found
 
 
 def is_mask(path: str | Path) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -25,19 +26,35 @@ def run(arguments: argparse.Namespace) -> int:
     """Run every check; 1 if one finds a fault."""
     from polyfold.testing import check
 
-    component, faults, count = "", 0, 0
+    here: set[str] = set()
+    component, faults, count = "", Counter[str](), 0
     for found in check(arguments.name, _params(arguments.params)):
         if found.component != component:
-            component = found.component
+            component, here = found.component, set()
             print(f"{component}{f'  not tried: it {found.untried}' if found.untried else ''}")
         if found.untried:
             continue
         print(f"  {'✗' if found.fault else '✓'} {found.says}", flush=True)
+        count += 1
         if found.fault:
-            print(f"      {found.fault}")
-        count, faults = count + 1, faults + (found.fault is not None)
-    print(f"{count} checks, {faults} {'fault' if faults == 1 else 'faults'}")
+            print("      the same as above" if found.fault in here else f"      {found.fault}", flush=True)
+            here.add(found.fault)
+            faults[found.fault] += 1
+    print(f"{count} checks, {_counted(faults)}")
     return 1 if faults else 0
+
+
+def _counted(faults: Counter[str]) -> str:
+    """How many checks found something wrong, and how much of that is different."""
+    total, different = faults.total(), len(faults)
+    said = f"{total} {'fault' if total == 1 else 'faults'}"
+    return (
+        said
+        if total == different
+        else f"{said}, {different} of them different"
+        if different > 1
+        else f"{said}, all the same"
+    )
 
 
 def _params(text: str) -> Mapping[str, Mapping[str, Any]]:

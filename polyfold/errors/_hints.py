@@ -8,6 +8,7 @@ import re
 import reprlib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+from operator import index
 from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 if TYPE_CHECKING:
@@ -83,6 +84,28 @@ def toml_problem(error: ValueError, text: str) -> str:
     return f"is not valid TOML: {error}; {remedy}"
 
 
+MOST = 2**63 - 1
+"""The largest whole number that every file format and random generator here takes."""
+
+
+def whole_number_problem(value: object, least: int = 0, written: str | None = None) -> str:
+    """Say that a value is no whole number from ``least`` to :data:`MOST`; empty if it is one, numpy's included.
+
+    Args:
+        value: what is given.
+        least: the smallest that will do.
+        written: as what it was given, if it was read from a text.
+    """
+    try:
+        number = least - 1 if isinstance(value, bool) else index(value)  # pyright: ignore[reportArgumentType]
+    except TypeError:
+        number = least - 1
+    if least <= number <= MOST:
+        return ""
+    most = f" to {MOST}" if number > MOST else ""
+    return f"{(value if written is None else written)!r} is not a whole number from {least}{most}; give one"
+
+
 def misplaced_truth(values: Mapping[str, Any], fields: Mapping[str, FieldInfo]) -> str:
     """Say which number is given as true or false, which pydantic takes for 1 and 0; empty if none is.
 
@@ -153,7 +176,10 @@ def validation_problem(error: ValidationError, known: Iterable[str] = (), below:
         A phrase for a message that begins with where the values came from, such as
         ``has a bad value for 'policy.gamma': Input should be less than 1; change it``.
     """
-    problem = error.errors()[0]
+    problems = error.errors()
+    problem = problems[0]
+    if problem["type"] == "missing":  # what is missing was often given by a name that there is not
+        problem = next((one for one in problems if one["type"] == "extra_forbidden"), problem)
     place = ".".join(str(part) for part in problem["loc"][below:])
     if problem["type"] == "extra_forbidden":
         known = list(known)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import reprlib
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from polyfold.errors import PlanError
 from polyfold.geometry import _plane as geometry
 
 Floats = NDArray[np.float64]
@@ -19,21 +23,42 @@ class FoldLine:
     Attributes:
         start: x and y where it begins [px].
         end: x and y where it ends [px].
+
+    Raises:
+        PlanError: if one is no finite pixel, or both are the same.
     """
 
     start: tuple[float, float]
     end: tuple[float, float]
 
+    def __post_init__(self) -> None:
+        for name in ("start", "end"):
+            object.__setattr__(self, name, _pixel(getattr(self, name), f"the {name}"))
+        if self.start == self.end:
+            x, y = self.start
+            raise PlanError(
+                f"a fold line goes from one pixel to another, and both are ({x:g}, {y:g}); choose two points apart"
+            )
+
     @classmethod
     def between(cls, start: ArrayLike, end: ArrayLike) -> FoldLine:
         """The line from one point to another [px], each of shape (2,)."""
-        (x0, y0), (x1, y1) = np.asarray(start, float), np.asarray(end, float)
-        return cls((float(x0), float(y0)), (float(x1), float(y1)))
+        return cls(_pixel(start, "the start"), _pixel(end, "the end"))
 
     @classmethod
     def moving(cls, pick: ArrayLike, place: ArrayLike) -> FoldLine:
-        """The line that carries ``pick`` onto ``place`` [px], each of shape (2,): their perpendicular bisector."""
-        return cls.between(*geometry.perpendicular_bisector(pick, place))
+        """The line that carries ``pick`` onto ``place`` [px], each of shape (2,): their perpendicular bisector.
+
+        Raises:
+            PlanError: if one is no finite pixel, or both are the same.
+        """
+        start, end = _pixel(pick, "the pick"), _pixel(place, "the place")
+        if start == end:
+            raise PlanError(
+                f"pick and place are both at ({start[0]:g}, {start[1]:g}), so no line lies between them; "
+                "choose two points apart"
+            )
+        return cls.between(*geometry.perpendicular_bisector(start, end))
 
     @property
     def length(self) -> float:
@@ -66,3 +91,15 @@ class FoldLine:
     def reversed(self) -> FoldLine:
         """The same line with the other side lifted."""
         return FoldLine(self.end, self.start)
+
+
+def _pixel(point: Any, name: str) -> tuple[float, float]:
+    try:
+        x, y = (float(coordinate) for coordinate in point)
+    except (TypeError, ValueError):
+        raise PlanError(
+            f"{name} of a fold line is a pixel (x, y), not {reprlib.repr(point)}; give two numbers"
+        ) from None
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise PlanError(f"{name} of a fold line is a finite pixel (x, y), not ({x:g}, {y:g}); give two numbers")
+    return x, y

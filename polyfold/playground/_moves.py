@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from polyfold._brief import brief
 from polyfold.errors import ConfigError
 from polyfold.geometry import FoldLine
@@ -35,8 +33,6 @@ class Turn:
 
 
 def refuse_what_is_no_move(move: object, kinds: Any) -> None:
-    """Raise ConfigError for what is neither, or a line that is nowhere."""
+    """Raise ConfigError for what is neither."""
     if not isinstance(move, kinds):
         raise ConfigError(f"{move!r} is no move; give a polyfold.FoldLine, a polyfold.Action, or to fold a sentence")
-    if isinstance(move, FoldLine) and not np.isfinite([move.start, move.end]).all():
-        raise ConfigError("a fold line goes from one finite pixel to another; one is NaN or infinite")

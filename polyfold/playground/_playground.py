@@ -13,7 +13,7 @@ import numpy as np
 
 from polyfold import plugins
 from polyfold.api._fold import folder_for, garment_for, save
-from polyfold.config import Experiment
+from polyfold.config import Experiment, checked_seed
 from polyfold.errors import ConfigError, GroundingError
 from polyfold.evaluation import judge
 from polyfold.garments import Garment
@@ -52,9 +52,9 @@ def play(
 
     Raises:
         PluginError: if there is no such kind of garment, or no such component.
-        ConfigError: if the agent can't follow sentences alone.
+        ConfigError: if the agent can't follow sentences alone, or the seed is no whole number.
     """
-    experiment = (experiment or Experiment()).override(components)
+    experiment, seed = (experiment or Experiment()).override(components), checked_seed(seed)
     return Playground(garment_for(experiment, garment, seed), seed, experiment)
 
 

@@ -109,11 +109,11 @@ class PlaygroundWidget(anywidget.AnyWidget):
 
     def _drew_line(self, told: Mapping[str, Any]) -> None:
         width, height = self.size
-        line = FoldLine.between(*np.clip(np.round([told["start"], told["end"]], 1), 0, [width - 1, height - 1]))
-        if line.length < 1.0:
+        start, end = np.clip(np.round([told["start"], told["end"]], 1), 0, [width - 1, height - 1])
+        if np.hypot(*(end - start)) < 1.0:
             self.status = "that was a click; drag from where the fold line begins to where it ends"
             return
-        self._think_of(line)
+        self._think_of(FoldLine.between(start, end))
 
     def _drew_picks(self, told: Mapping[str, Any]) -> None:
         arrows = np.round(told["arrows"], 1)  # arms, pick and place, x and y

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from polyfold.errors import GarmentError
+from polyfold.errors import GarmentError, PluginError, did_you_mean
 from polyfold.plugins._host import HOST
 from polyfold.plugins._traits import MadeOf
 
@@ -54,6 +55,18 @@ def chosen_fabric(choice: ComponentSpec, garment_kind: str) -> ComponentSpec:
     return choice.model_copy(update={"name": default_fabric(garment_kind)})
 
 
+def _make_usual(garment_kind: str, params: Mapping[str, Any]) -> Fabric:
+    name = default_fabric(garment_kind)
+    if name not in HOST.names("fabrics"):
+        owner = HOST.find("garments", garment_kind).plugin
+        whose = "that was registered by hand" if owner.is_session else f"of the plugin {owner.label}"
+        raise PluginError(
+            f"the garment {garment_kind!r} {whose} is usually made of {name!r} (default_fabric), and no fabric is "
+            f"called so; {did_you_mean(name, HOST.names('fabrics'))}"
+        )
+    return HOST.create("fabrics", name, params).fabric()
+
+
 def make_fabric(choice: ComponentSpec, garment_kind: str) -> Fabric:
     """The fabric that an experiment's ``fabric`` means for a kind of garment.
 
@@ -61,8 +74,9 @@ def make_fabric(choice: ComponentSpec, garment_kind: str) -> Fabric:
         PluginError: if there is no such fabric or kind; the message suggests the nearest.
         ConfigError: if a constant is unknown or not plausible.
     """
-    chosen = chosen_fabric(choice, garment_kind)
-    return HOST.create("fabrics", chosen.name, chosen.params).fabric()
+    if is_usual("fabrics", choice):
+        return _make_usual(garment_kind, choice.params)
+    return HOST.create("fabrics", choice.name, choice.params).fabric()
 
 
 def garment_template(garment_kind: str, fabric: Fabric | None = None) -> Template:
@@ -77,7 +91,7 @@ def garment_template(garment_kind: str, fabric: Fabric | None = None) -> Templat
     """
     from polyfold.plugins.interfaces import SewnKind
 
-    made = fabric or HOST.create("fabrics", default_fabric(garment_kind)).fabric()
+    made = fabric or _make_usual(garment_kind, {})
     cls = HOST.component_class("garments", garment_kind)
     panels = cls.pattern.layers if isinstance(cls, SewnKind) else 1
     return HOST.create("garments", garment_kind).template().of_thickness(panels * made.thickness)
@@ -111,11 +125,12 @@ def generate_garment(
 
     Raises:
         PluginError: if there is no such kind or fabric.
-        ConfigError: if a constant of the fabric is unknown or not plausible.
+        ConfigError: if the seed is no whole number, or a constant of the fabric is unknown or not plausible.
         GarmentError: if the size is not one that two arms fold.
     """
-    from polyfold.config import Experiment
+    from polyfold.config import Experiment, checked_seed
 
+    seed = checked_seed(seed)
     generator = HOST.create("garments", garment_kind)
     garment = generator.generate(seed) if edge_length is None else generator.generate(seed, edge_length)
     if size is not None:

@@ -9,8 +9,7 @@ from __future__ import annotations
 import importlib
 import traceback
 import warnings
-from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import pluggy
@@ -18,12 +17,13 @@ import pluggy
 from polyfold.errors import ConfigError, PluginError, did_you_mean, validation_problem
 from polyfold.errors._hints import misplaced_truth
 from polyfold.plugins import hookspecs
-from polyfold.plugins._border import faultless, guarded
+from polyfold.plugins._border import constructed, guarded
 from polyfold.plugins._calling import call, implementations
 from polyfold.plugins._observation import Observers
-from polyfold.plugins._registry.carrying import packed, unpacked
-from polyfold.plugins._registry.catalog import Catalog, Component, Plugin, Problem, refuse_reserved
+from polyfold.plugins._registry.carrying import portable, unpacked
+from polyfold.plugins._registry.catalog import RENAME, SESSION, Catalog, Component, Plugin, Problem
 from polyfold.plugins._registry.discovery import disabled_by_environment, discover, new_manager
+from polyfold.plugins._registry.naming import refuse_name, refuse_target, which_garment
 from polyfold.plugins._traits import Configurable, TakesArgument, moved_to
 from polyfold.plugins.hookspecs import singular
 
@@ -91,16 +91,31 @@ class Host:
     ) -> None:
         """Register a component from a script or a notebook cell; a later registration of the name replaces the earlier.
 
+        A plugin's component of that name gives way to it, which is warned of, until it is unregistered.
+
         Args:
             kind: one of :data:`polyfold.plugins.hookspecs.KINDS`, for example ``"policies"``.
             name: what to call it.
-            target: the class itself, or ``"package.module:Class"``.
+            target: the class itself, or ``"package.module:Class"``; for tasks the path of their file.
             summary: one line.
             needs: distributions it needs.
+
+        Raises:
+            PluginError: if there is no such kind, the name is not allowed, or the target is neither.
         """
         _check_kind(kind)
-        refuse_reserved(kind, name)
-        by_hand = Plugin("<session>", "", "", "registered by hand")
+        refuse_name(kind, name)
+        refuse_target(kind, name, target)
+        if hidden := [entry for entry in self.catalog().components[kind].get(name, []) if not entry.plugin.is_session]:
+            self._warn(
+                f"the {singular(kind)} {name!r} of the plugin {hidden[0].plugin.label} gives way to the one registered "
+                f"by hand, in this process, until polyfold.plugins.unregister({kind!r}, {name!r}); choose another name "
+                "to have both"
+            )
+        self._add(kind, name, target, summary, needs)
+
+    def _add(self, kind: str, name: str, target: type | str, summary: str = "", needs: tuple[str, ...] = ()) -> None:
+        by_hand = Plugin(SESSION, "", "", "registered by hand")
         self._by_hand.pop((kind, name), None)
         self._by_hand[kind, name] = Component(name, target, summary, tuple(needs), by_hand)
         self.refresh()
@@ -121,12 +136,12 @@ class Host:
 
         The target is what to import, or the class itself, packed, where it is of a notebook or a script.
         """
-        targets = {key: _portable(component.target) for key, component in self._by_hand.items()}
+        targets = {key: portable(component.target) for key, component in self._by_hand.items()}
         return [(kind, name, target) for (kind, name), target in targets.items() if target is not None]
 
     def receive(self, kind: str, name: str, target: str | bytes) -> None:
-        """Register what another process of this user's found :meth:`portable`."""
-        self.register(kind, name, unpacked(target) if isinstance(target, bytes) else target)
+        """Register what another process of this user's found :meth:`portable`, and warned of."""
+        self._add(kind, name, unpacked(target) if isinstance(target, bytes) else target)
 
     def names(self, kind: str) -> list[str]:
         """Names of the usable components of a kind, sorted."""
@@ -144,6 +159,9 @@ class Host:
         if not entries:
             raise PluginError(self._unknown(kind, name))
         if len(entries) > 1:
+            if all(entry.plugin is entries[0].plugin for entry in entries):
+                label = entries[0].plugin.label
+                raise PluginError(f"the plugin {label} registers the {singular(kind)} {name!r} twice; {RENAME}")
             owners = " and ".join(entry.plugin.label for entry in entries)
             raise PluginError(
                 f"the {singular(kind)} {name!r} is registered by {owners}; "
@@ -156,7 +174,8 @@ class Host:
         found = self.catalog()
         known = sorted(found.components[kind])
         of_garment = kind == "garments" and isinstance(name, str)
-        hint = self._which_garment(name, known) if of_garment else did_you_mean(name, known)
+        also = {one: tuple(getattr(self._class_if_any(one), "also_called", ())) for one in known if of_garment}
+        hint = which_garment(name, also) if of_garment else did_you_mean(name, known)
         what = "task suite" if kind == "tasks" else singular(kind)
         message = f"no {what} is called {name!r}; {hint}"
         troubled = [plugin for plugin in found.plugins if plugin.problems]
@@ -164,21 +183,6 @@ class Host:
             listed = "; ".join(f"{plugin.label}: {plugin.problems[0].summary}" for plugin in troubled)
             message += f". A plugin that might have registered it has a problem: {listed}"
         return message
-
-    def _which_garment(self, name: str, known: Sequence[str]) -> str:
-        """The kind that people call so, or all kinds with what else they are called; few names are near by chance."""
-        also = {kind: tuple(getattr(self._class_if_any(kind), "also_called", ())) for kind in known}
-        one = name.lower().removesuffix("s")
-        called = {kind: (kind.removesuffix("s"), *(other.removesuffix("s") for other in also[kind])) for kind in also}
-        # A kind's own name before what else another is called.
-        for names in ({kind: known[:1] for kind, known in called.items()}, called):
-            for kind, known_as in names.items():
-                if one in known_as:
-                    return f"did you mean {kind!r}?"
-        if near := get_close_matches(name.lower(), known, n=1, cutoff=0.8):
-            return f"did you mean {near[0]!r}?"
-        listed = (f"{kind} ({', '.join(names)})" if names else kind for kind, names in also.items())
-        return f"there are {', '.join(listed)}"
 
     def _class_if_any(self, kind: str) -> Any:
         try:
@@ -210,7 +214,7 @@ class Host:
         by_hand = (kind, name) in self._by_hand
         home = "that was registered by hand" if by_hand else f"of the plugin {self.find(kind, name).plugin.label}"
         owner = f"the {singular(kind)} {name!r} {home}"
-        made = faultless(lambda: cls(**components) if config is None else cls(config, **components), owner)
+        made = constructed(cls, [] if config is None else [config], components, owner)
         return guarded(made, kind, owner)
 
     def create_chosen(self, experiment: Experiment, field: str) -> Any:
@@ -277,15 +281,6 @@ class Host:
 def _check_kind(kind: str) -> None:
     if kind not in hookspecs.KINDS:
         raise PluginError(f"there is no kind of component called {kind!r}; {did_you_mean(kind, hookspecs.KINDS)}")
-
-
-def _portable(target: type | str) -> str | bytes | None:
-    """Where another process finds a class; the class itself, packed, if it is of a notebook, a script or a function."""
-    if isinstance(target, str):
-        return target
-    if target.__module__ == "__main__" or "<locals>" in target.__qualname__:
-        return packed(target)
-    return f"{target.__module__}:{target.__qualname__}"
 
 
 def _configured(cls: Any, values: dict[str, Any], owner: str) -> Any:

@@ -4,6 +4,9 @@ Every component class may carry a nested pydantic model ``Config``; its fields a
 command line, in TOML and in notebooks, and an instance of it is the constructor's only argument. A class without
 ``Config`` takes no argument. Keep heavy imports inside methods, so that reading a ``Config`` stays cheap.
 
+Methods are handed their arguments by place, in the order that stands here. The arrays of pictures, scenes and outcomes
+are read-only while a component works on them: others do so after it. Copy what is to be changed.
+
 Beside the protocol of each kind stand those of what a component may do as well; they are looked for with
 ``isinstance``.
 """

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import closing
 
 from polyfold import plugins
-from polyfold.config import Experiment
+from polyfold.config import Experiment, checked_seed
 from polyfold.garments import Garment
 from polyfold.plugins.interfaces import Agent, Simulator, UsesComponents
 from polyfold.rollout._inputs import Start
@@ -57,14 +57,15 @@ def run_episode(
         judge: scores the episode before observers are told of its end.
 
     Raises:
-        ConfigError: if the agent requires guidance and no task is given, or the instruction is no text.
+        ConfigError: if the agent requires guidance and no task is given, the instruction is no text, or the seed no
+            whole number.
     """
     if simulator is None:
         with closing(plugins.create_chosen(experiment, "simulator")) as own:
             return run_episode(
                 experiment, garment, instruction, seed, own, agent, task, agent_seed, role=role, judge=judge
             )
-    instruction = plain(instruction)
+    instruction, seed = plain(instruction), checked_seed(seed)
     agent = agent or build_agent(experiment)
     transcript = Transcript(
         plugins.create_chosen(experiment, "llm") if "instruction" in agent.requires else None,

@@ -15,21 +15,20 @@ from html import escape
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
 from polyfold import plugins
-from polyfold.config import ComponentSpec, Experiment, read_toml
-from polyfold.errors import ConfigError, did_you_mean, validation_problem
-from polyfold.errors._hints import misplaced_truth
+from polyfold.config import ComponentSpec, Experiment, Settings, read_toml
+from polyfold.errors import ConfigError, did_you_mean
 from polyfold.plugins import hookspecs
-from polyfold.plugins._fabrics import LARGEST, SMALLEST
+from polyfold.plugins._fabrics import LARGEST, SMALLEST, is_usual
 from polyfold.plugins._inspection import moved_parameter, parameter_names
 from polyfold.types._views import view_of
 
 Overrides = dict[str, Any]
 
 
-class Study(BaseModel):
+class Study(Settings):
     """What to run: a suite's tasks and goals on seeded garments, once per variant.
 
     Attributes:
@@ -58,8 +57,6 @@ class Study(BaseModel):
         factors: name of a variant -> what tells it from the others, by setting; :func:`grid` fills it in, so that
             effects can be told apart by setting.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     name: str = Field(pattern=r"^[A-Za-z0-9_.-]{1,60}$")
     suite: str = "polyfold70"
@@ -92,14 +89,9 @@ class Study(BaseModel):
 def load(path: str | Path) -> Study:
     """Read a study from TOML. Raises ConfigError with the file and the setting that is wrong."""
     settings = read_toml(path)
-    if wrong := misplaced_truth(settings, Study.model_fields):
-        raise ConfigError(f"{path} {wrong}")
-    try:
-        study = Study(**{"name": Path(path).stem, **settings})
-    except ValidationError as error:
-        raise ConfigError(f"{path} {validation_problem(error, Study.model_fields)}") from error
+    study = Study.model_validate({"name": Path(path).stem, **settings}, context={"source": str(path)})
     for variant in study.variants:
-        experiment_of(study, variant)
+        _check_components(experiment_of(study, variant))
     return study
 
 
@@ -111,6 +103,10 @@ def ablate(base: Study, path: str, values: Sequence[Any], names: Sequence[str] |
         path: dotted path of the setting: ``"policy"``, ``"fabric"``, ``"fabric.thickness"``.
         values: its values.
         names: names of the variants; by default the values.
+
+    Raises:
+        ConfigError: if there is no such setting, or its values are no list.
+        PluginError: if a value names no component that there is; the message suggests the nearest.
     """
     return grid(base, {path: values}, names)
 
@@ -136,7 +132,7 @@ def grid(base: Study, settings: dict[str, Sequence[Any]], names: Sequence[str] |
     }
     study = base.model_copy(update={"variants": variants, "factors": factors})
     for variant in variants:
-        experiment_of(study, variant)
+        _check_components(experiment_of(study, variant))
     return study
 
 
@@ -207,6 +203,17 @@ def _flat(settings: Overrides) -> Overrides:
         else:
             flat[key] = value
     return flat
+
+
+def _check_components(experiment: Experiment) -> None:
+    """Raises PluginError for a component that nobody registered, naming the nearest; what it needs may be missing."""
+    for field in Experiment.model_fields:
+        spec = getattr(experiment, field)
+        if not isinstance(spec, ComponentSpec):
+            continue
+        kind, name = hookspecs.plural(field), spec.name.partition(":")[0]
+        if not is_usual(kind, spec) and name not in plugins.names(kind):
+            plugins.find(kind, name)
 
 
 def _check_parameters(experiment: Experiment, variant: str) -> None:

@@ -128,6 +128,8 @@ def _line_of(fold: Fold, keypoints: Mapping[str, ArrayLike]) -> FoldLine:
         targets = [_position(target, keypoints) for _, target in fold.pairs]
         return mirror_line(sources, targets)
     start, end = (_position(point, keypoints) for point in fold.crease or ())
+    if (start == end).all():
+        raise ValueError("the crease's two points lie on one another")
     line = FoldLine.between(start, end)
     distance = float(line.distance(_position(fold.lift or {}, keypoints)))
     if distance == 0.0:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any
 
 from polyfold import plugins
 from polyfold.errors import PluginError, did_you_mean
-from polyfold.plugins._registry.catalog import Plugin
+from polyfold.plugins._registry.catalog import Catalog, Plugin
 from polyfold.plugins._traits import Configurable
 from polyfold.plugins.hookspecs import KINDS, singular
 
@@ -86,7 +87,7 @@ def subjects(name: str, params: Mapping[str, Mapping[str, Any]] | None = None) -
         PluginError: if there is no such plugin; if it is broken or registers nothing; the message says why.
     """
     params = dict(params or {})
-    catalog = plugins.catalog()
+    catalog, owners = _looked_at(name)
     found = [
         Subject(kind, entry.name, params.pop(f"{singular(kind)} {entry.name}", {}))
         for kind in KINDS
@@ -94,7 +95,6 @@ def subjects(name: str, params: Mapping[str, Mapping[str, Any]] | None = None) -
         for entry in entries
         if name in (entry.plugin.name, entry.plugin.distribution, entry.name, f"{singular(kind)} {entry.name}")
     ]
-    owners = [plugin for plugin in catalog.plugins if name in (plugin.name, plugin.distribution)]
     for plugin in owners:
         _refuse_broken(plugin)
     if params:
@@ -102,6 +102,19 @@ def subjects(name: str, params: Mapping[str, Mapping[str, Any]] | None = None) -
     if not found:
         raise PluginError(_nothing(name, owners))
     return found
+
+
+def _looked_at(name: str) -> tuple[Catalog, list[Plugin]]:
+    """The catalog, and the plugins that are meant; what is wrong with these is an error here and no warning as well."""
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        catalog = plugins.catalog()
+    owners = [plugin for plugin in catalog.plugins if name in (plugin.name, plugin.distribution)]
+    told = {f"plugin {plugin.label}: {problem.summary}" for plugin in owners for problem in plugin.problems}
+    for warning in warned:
+        if str(warning.message) not in told:
+            warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+    return catalog, owners
 
 
 def _refuse_broken(plugin: Plugin) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,6 +52,7 @@ class Scene:
         picture: what a vision model is shown beside the text: colours, uint8, shape (H, W, 3); None for none.
         shown: what text and picture hold, of ``polygon``, ``keypoints``, ``image``; it decides which prompt explains
             them to the language model (``fold_line/keypoints-image-v2.md``).
+        grounding: which grounding made it, in words for messages; the host writes it.
     """
 
     kind: str
@@ -64,5 +65,6 @@ class Scene:
     notes: tuple[str, ...] = ()
     picture: NDArray[np.uint8] | None = None
     shown: tuple[str, ...] = ("polygon",)
+    grounding: str = field(default="", repr=False)
 
     __repr__ = brief

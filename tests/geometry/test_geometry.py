@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 import shapely
@@ -6,6 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from polyfold import geometry
+from polyfold.errors import PlanError
 from polyfold.geometry import FoldLine
 from polyfold.geometry._areas import covered
 from polyfold.geometry._masks import fill_polygon
@@ -20,6 +23,35 @@ def lines(draw):
     start, end = draw(point), draw(point)
     assume(np.hypot(end[0] - start[0], end[1] - start[1]) > 1)
     return FoldLine(start, end)
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "says"),
+    [
+        ("a", "b", "the start of a fold line is a pixel (x, y), not 'a'; give two numbers"),
+        ((1, 2), None, "the end of a fold line is a pixel (x, y), not None; give two numbers"),
+        ((1, 2, 3), (4, 5, 6), "the start of a fold line is a pixel (x, y), not (1, 2, 3); give two numbers"),
+        ((1, 2), (np.nan, 5), "the end of a fold line is a finite pixel (x, y), not (nan, 5); give two numbers"),
+        ((1, 2), (1.0, 2.0), "goes from one pixel to another, and both are (1, 2); choose two points apart"),
+    ],
+)
+@pytest.mark.parametrize("make", [FoldLine, FoldLine.between])
+def test_what_is_no_line_is_refused_when_it_is_made(make, start, end, says):
+    with pytest.raises(PlanError, match=re.escape(says)):
+        make(start, end)
+
+
+def test_nothing_is_carried_from_where_it_lies_to_the_same_place():
+    with pytest.raises(PlanError, match=r"pick and place are both at \(5, 6\), so no line lies between them"):
+        FoldLine.moving((5, 6), [5.0, 6.0])
+    with pytest.raises(PlanError, match=r"the place of a fold line is a pixel \(x, y\), not None"):
+        FoldLine.moving((5, 6), None)
+
+
+def test_a_line_of_numpy_s_numbers_is_the_line_of_python_s():
+    line = FoldLine(np.array([1, 2]), np.float32([3.5, 4]))
+    assert line == FoldLine((1.0, 2.0), (3.5, 4.0))
+    assert repr(line) == "FoldLine(start=(1.0, 2.0), end=(3.5, 4.0))"
 
 
 def test_left_is_left_as_seen_in_the_image():
@@ -52,8 +84,6 @@ def test_moving_line_carries_pick_onto_place_and_lifts_it(pick, place):
 def test_coinciding_points_are_refused():
     with pytest.raises(ValueError, match="coincide"):
         geometry.signed_distance([(0, 0)], (1, 1), (1, 1))
-    with pytest.raises(ValueError, match="coincide"):
-        FoldLine.moving((1, 1), (1, 1))
 
 
 @given(cloud, st.floats(-7, 7), point)

@@ -2,15 +2,18 @@
 
 import inspect
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import polyfold
 from polyfold import plugins
-from polyfold.errors import ActionError, PluginError
+from polyfold.errors import ActionError, ConfigError, PluginError
+from polyfold.geometry import FoldLine
 from polyfold.plugins import hardware, interfaces
-from polyfold.plugins._border import METHODS
+from polyfold.plugins._owed import METHODS
+from polyfold.testing._materials import scene as scene_of_square
 from polyfold.types import Action, Observation
 
 PROTOCOLS = {
@@ -113,6 +116,119 @@ def test_subgoals_are_a_list_of_them(registered):
         registered, "planners", policy(subgoals=subgoals, plan=lambda self, subgoal, scene, conversation: None)
     )
     assert "returned a str among them from subgoals" in message
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"text": "the hem is at the bottom"}, "a Scene whose text is no JSON ('the hem is at the bottom')"),
+        ({"text": '{"garment": "square", "residual": NaN}'}, "a Scene whose text holds NaN, which JSON does not have"),
+        ({"text": {"garment": "square"}}, "a Scene whose text is a dict and no string"),
+        ({"text": "[1, 2]"}, "a Scene whose text is JSON and no object ('[1, 2]')"),
+        ({"shown": "polygon"}, "a Scene whose shown is 'polygon', no tuple of names"),
+        ({"mask": np.zeros((3, 4), bool)}, "a Scene whose mask is an array of bool, shape (3, 4), not bool and of"),
+        ({"contour": np.zeros((5, 3))}, "a Scene whose contour has shape (5, 3), not (N, 2)"),
+    ],
+)
+def test_a_scene_that_a_planner_would_stumble_over_is_its_grounding_s(registered, changes, said):
+    def ground(self, observation, mask, template, previous=None, fold_line=None):
+        scene = plugins.create("groundings", "polygon").ground(observation, mask, template, previous, fold_line)
+        return replace(scene, **changes)
+
+    message = told(registered, "groundings", policy(ground=ground))
+    assert f"returned {said}" in message
+    assert "it must return a Scene: its text a strict JSON object" in message
+
+
+def test_what_no_prompt_explains_is_told_with_the_grounding_that_shows_it(registered):
+    def ground(self, observation, mask, template, previous=None, fold_line=None):
+        scene = plugins.create("groundings", "polygon").ground(observation, mask, template, previous, fold_line)
+        return replace(scene, shown=("polygons",))
+
+    name = registered("groundings", policy(ground=ground))
+    with pytest.raises(ConfigError) as caught:
+        polyfold.fold("fold it in half", garment="square", seed=0, grounding=name)
+    assert str(caught.value).startswith(
+        "the grounding 'mine' that was registered by hand says that its scene shows polygons (scene.shown), and there "
+        "is no prompt fold_line@polygons-v2; did you mean"
+    )
+
+
+def write_mask(scene):
+    scene.mask[:] = False
+
+
+def write_contour(scene):
+    scene.contour -= 1.0
+
+
+def draw(scene):
+    import cv2
+
+    cv2.circle(scene.picture, (5, 5), 3, (0, 0, 0))
+
+
+@pytest.mark.parametrize("write", [write_mask, write_contour, draw])
+def test_what_is_handed_can_t_be_written_into_and_who_tries_is_named(registered, write):
+    def act(self, fold_line, scene, rng):
+        write(replace(scene))
+        return Action([scene.contour[0]], [scene.contour[1]])
+
+    mine = plugins.create("policies", registered("policies", policy(act=act)))
+    seen = scene_of_square()
+    before = seen.mask.copy()
+    with pytest.raises(PluginError) as caught:
+        mine.act(FoldLine((0.0, 200.0), (400.0, 200.0)), seen, np.random.default_rng(0))
+    assert str(caught.value).startswith(
+        "the policy 'mine' that was registered by hand writes in act into an array that is read-only, as all are "
+    )
+    assert re.search(
+        rf"\(.*test_border.py:\d+, in {write.__name__}\); copy it first: array.copy\(\)$", str(caught.value)
+    )
+    assert (seen.mask == before).all()
+    seen.mask[0] = True  # theirs again who made it
+
+
+def test_a_picture_is_read_only_too(registered):
+    def segment(self, observation):
+        observation.rgb[:5] = 0
+        return observation.rgb[..., 0] > 0
+
+    assert "writes in segment into an array that is read-only" in told(
+        registered, "segmenters", policy(segment=segment)
+    )
+
+
+@pytest.mark.parametrize("flaw", [{"vertices": np.nan}, {"triangles": 10_000}])
+def test_a_mesh_that_is_none_is_refused_with_the_garment_that_made_it(registered, flaw):
+    def generate(self, seed, edge_length=0.02):
+        garment = plugins.create("garments", "square").generate(seed, edge_length)
+        mesh = replace(garment.mesh, **{name: getattr(garment.mesh, name).copy() for name in flaw})
+        for name, value in flaw.items():
+            getattr(mesh, name)[0] = value
+        return replace(garment, mesh=mesh)
+
+    def template(self):
+        return plugins.create("garments", "square").template()
+
+    name = registered("garments", policy(kind="mine", template=template, generate=generate))
+    with pytest.raises(
+        PluginError, match=r"^the garment 'mine' that was registered by hand returned a Garment whose mesh"
+    ):
+        polyfold.garment(name)
+
+
+def test_arguments_in_another_order_are_refused_before_they_are_mistaken_for_each_other(registered):
+    message = told(registered, "policies", policy(act=lambda self, scene, fold_line, rng: None))
+    assert "has act(scene, fold_line, rng), whose order is act(fold_line, scene, rng); give" in message
+
+
+def test_a_constructor_is_given_nothing_or_a_config(registered):
+    def begin(self, weights, arms=2):
+        """It would be given neither."""
+
+    message = told(registered, "policies", policy(__init__=begin, act=lambda self, fold_line, scene, rng: None))
+    assert "its __init__(weights, arms=2) is given nothing, as it has no Config; take that alone" in message
 
 
 def test_an_agent_says_what_it_requires(registered):

@@ -115,3 +115,17 @@ def test_the_example_does_what_policies_promise(polyfold):
     assert checked.returncode == 0, checked.stdout + checked.stderr
     assert "policy middle" in checked.stdout
     assert checked.stdout.rstrip().endswith("9 checks, 0 faults")
+
+
+@pytest.mark.parametrize("name", ["crashing", "misspelt"])
+def test_what_keeps_a_plugin_from_being_checked_is_said_once(polyfold, name):
+    checked = polyfold("check", name, plugins=[name, "watching"])
+    assert checked.returncode == 1
+    (told,) = checked.stderr.splitlines()
+    assert told.startswith(f"polyfold: the plugin '{name}' (polyfold-{name} 1.2.3) has a problem: ")
+
+
+def test_what_is_wrong_with_another_plugin_is_warned_of_nevertheless(polyfold):
+    checked = polyfold("check", "polyfold-example", plugins=["example", "misspelt"])
+    assert checked.returncode == 0, checked.stderr
+    assert checked.stderr.count("warning: plugin 'misspelt'") == 1

@@ -65,6 +65,7 @@ def test_hosts_share_no_observers():
     assert counter.seen == 1
 
 
+@pytest.mark.filterwarnings("ignore:the policy 'caso' of the plugin")
 def test_what_is_registered_by_hand_gives_way_to_what_it_hid():
     host = Host()
     caso = host.component_class("policies", "caso")
@@ -252,6 +253,21 @@ def test_what_a_plugin_prints_is_no_part_of_an_answer(installed, capsys):
     said = capsys.readouterr()
     assert said.out == ""
     assert said.err == "hello\nthere\n"
+
+
+def test_a_name_that_one_plugin_registers_twice_is_told_as_its_own_fault(installed):
+    installed(
+        "stutters",
+        "from polyfold import hookimpl\n\n@hookimpl\ndef register_policies(register):\n"
+        "    register('again', 'a:B')\n    register('again', 'a:C')\n",
+    )
+    host = Host()
+    with pytest.warns(UserWarning, match="'stutters'"):
+        assert problems(host, "stutters") == [
+            "it registers the policies name 'again' twice; give one of the two another name, or take it out of the hook"
+        ]
+    with pytest.raises(PluginError, match=r"the plugin 'stutters' \(.*\) registers the policy 'again' twice; give one"):
+        host.find("policies", "again")
 
 
 def test_a_requirement_that_is_installed_in_another_version_is_missing():

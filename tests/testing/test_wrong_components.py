@@ -1,5 +1,7 @@
 """Classic mistakes, one a component: each is found, and its message says which it is and what to change."""
 
+import json
+import re
 from dataclasses import replace
 from typing import ClassVar
 
@@ -8,6 +10,7 @@ import pytest
 from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold import plugins
+from polyfold.cli import main
 from polyfold.errors import PluginError
 from polyfold.polygon import Template
 from polyfold.testing import check, conformance
@@ -139,6 +142,20 @@ class LooseJson:
         return replace(scene, text=scene.text.replace("}", ', "residual": NaN}', 1))
 
 
+class NothingExplains:
+    def ground(self, observation, mask, template, previous=None, fold_line=None):
+        scene = plugins.create("groundings", "polygon").ground(observation, mask, template, previous, fold_line)
+        return replace(scene, shown=("polygons",))
+
+
+class SwappedPlaces:
+    def ground(self, observation, mask, template, previous=None, fold_line=None):
+        scene = plugins.create("groundings", "polygon").ground(observation, mask, template, previous, fold_line)
+        told = json.loads(scene.text)
+        told["vertices"] = {name: place[::-1] for name, place in told["vertices"].items()}
+        return replace(scene, text=json.dumps(told))
+
+
 class BelievesAnything:
     def subgoals(self, instruction, template, conversation):
         return [Subgoal(conversation.ask("subgoals", []).text)]
@@ -175,6 +192,24 @@ class FirstReferenceOnly:
 
     def score(self, result, references):
         return float(np.abs(result.end.positions - references[0].end.positions).mean())
+
+
+class NeverMeasures:
+    unit: ClassVar[str] = ""
+    higher_is_better: ClassVar[bool] = True
+
+    def score(self, result, references):
+        return float("nan")
+
+
+class OneMesh:
+    kind: ClassVar[str] = "mine"
+
+    def template(self):
+        return plugins.create("garments", "square").template()
+
+    def generate(self, seed, edge_length=0.02):
+        return replace(plugins.create("garments", "square").generate(seed, 0.02), kind="mine")
 
 
 class OtherNames:
@@ -239,23 +274,27 @@ WRONG = [
         "the same line, scene and seed give other picks. draw from the rng that act is handed",
     ),
     ("policies", Remembers, "after other lines the same one gives other picks. keep nothing between calls"),
-    ("policies", WritesIntoTheScene, "it writes into scene.mask. copy it first: scene.mask.copy()"),
+    ("policies", WritesIntoTheScene, "writes in act into an array that is read-only"),
     ("policies", FoldsNothing, "no cloth lies left of the line, and it picks at"),
     ("policies", ReturnsNothing, "returned None from act; it must return an Action"),
     ("policies", UndescribedParameters, "arms has no description. write Field(default=…, description='… [unit]')"),
     ("policies", SilentParameters, "it takes parameters that it does not know in silence"),
     ("segmenters", TableForCloth, "the mask of a blue square on a pale table covers it to 0.00 (IoU). True is cloth"),
     ("policies", LeavesPython, "can't be constructed: SystemExit: bye"),
-    ("segmenters", UndoesItself, "it writes into observation.rgb. copy it first: observation.rgb.copy()"),
+    ("segmenters", UndoesItself, "writes in segment into an array that is read-only, as all"),
     ("groundings", HeightForWidth, "image_size is (360, 400), not (400, 360). it is (width, height)"),
     ("groundings", SwappedContour, "px off the cloth. contour_of(mask) gives it, (x, y), y down"),
-    ("groundings", WritesIntoTheMask, "it writes into the mask that it is handed. copy it first: mask.copy()"),
-    ("groundings", LooseJson, "scene.text is no strict JSON object"),
+    ("groundings", WritesIntoTheMask, "writes in ground into an array that is read-only, as all"),
+    ("groundings", LooseJson, "a Scene whose text holds NaN, which JSON does not have"),
+    ("groundings", NothingExplains, "and no prompt explains 'polygons' to a language model. show one of image, key"),
+    ("groundings", SwappedPlaces, "px off the cloth. places are [x, y] in pixels of the picture, x to the right"),
     ("planners", BelievesAnything, "and the plan is None. check the answer; raise PlanError"),
     ("planners", NeverGivesUp, "it asked 40 times and did not give up; bound the repairs"),
     ("llms", FreeOfCharge, "the cost is 0, which says that it was free"),
     ("metrics", UpsideDownMetric, "the same one 0. look at higher_is_better"),
     ("metrics", FirstReferenceOnly, "take the best of them"),
+    ("metrics", NeverMeasures, "a square folded in half scores nan against itself, one folded elsewhere nan. NaN is"),
+    ("garments", OneMesh, "vertices at an edge length of 20 mm, and"),
     ("garments", OtherNames, "keypoints are ['bottom_left', 'bottom_right', 'top_left', 'top_right'], the template's"),
     ("simulators", ForgetsSpeed, "mm off. put all of the state back"),
     (
@@ -286,6 +325,15 @@ def test_every_classic_mistake_is_named(registered, kind, cls, says):
     faults = [found.fault for found in check("mine") if found.fault]
     assert any(says in fault for fault in faults), faults
     assert all("\n" not in fault for fault in faults)
+
+
+def test_one_fault_that_every_check_meets_is_said_once(registered, capsys):
+    registered("policies", LeavesPython)
+    assert main(["check", "policy mine"]) == 1
+    said = capsys.readouterr().out
+    assert said.count("can't be constructed: SystemExit: bye") == 1
+    assert said.count("✗") == said.count("      the same as above") + 1 > 5
+    assert re.search(r"^\d+ checks, (\d+) faults, all the same$", said.splitlines()[-1])
 
 
 def test_a_right_component_has_no_faults(registered):

@@ -31,6 +31,14 @@ _INNER = ("sleeve", "armpit", "shoulder", "neck", "crotch")
 """Vertices that a fold of a side need not take along."""
 
 
+def too_short(length: float) -> str:
+    """What a model is told of a fold line of so many pixels."""
+    return (
+        f"the fold line is {length:.0f} px long; choose two points at least {MIN_LENGTH:.0f} px apart "
+        "(vertices that an earlier fold brought together coincide: use the crease's ends)"
+    )
+
+
 def check_fold_line(line: FoldLine, scene: Scene) -> None:
     """Inside the image, long enough, cloth on both sides.
 
@@ -42,10 +50,7 @@ def check_fold_line(line: FoldLine, scene: Scene) -> None:
         if not (-0.5 <= x <= width - 0.5 and -0.5 <= y <= height - 0.5):
             raise PlanError(f"{end} ({x:.0f}, {y:.0f}) lies outside the {width} x {height} image; move it inside")
     if not line.length >= MIN_LENGTH:
-        raise PlanError(
-            f"the fold line is {line.length:.0f} px long; choose two points at least {MIN_LENGTH:.0f} px apart "
-            "(vertices that an earlier fold brought together coincide: use the crease's ends)"
-        )
+        raise PlanError(too_short(line.length))
     ys, xs = np.nonzero(scene.mask)
     distance = signed_distance(np.column_stack([xs, ys]), line.start, line.end)
     for share, side in ((np.mean(distance > 0), "left"), (np.mean(distance < 0), "right")):

@@ -11,6 +11,7 @@ from typing import Any
 from polyfold.errors import PlanError, RefusedError
 from polyfold.geometry import FoldLine
 from polyfold.types import Action, Reply
+from polyfold_planning.answers.lines import too_short
 
 _FENCE = re.compile(r"```[ \t]*(?:json\b)?\s*(.*?)\s*(?:```|\Z)", re.DOTALL | re.IGNORECASE)
 """A fenced block, on one line or many; the last one may lack its end."""
@@ -108,6 +109,8 @@ def fold_line_in(content: Mapping[str, Any]) -> FoldLine:
         if not isinstance(point, Mapping):
             raise PlanError(f"the JSON must have the form {form}; {end!r} is missing")
         points.append(tuple(_coordinate(point.get(axis), end, axis) for axis in ("x", "y")))
+    if points[0] == points[1]:
+        raise PlanError(too_short(0.0))
     return FoldLine(points[0], points[1])
 
 

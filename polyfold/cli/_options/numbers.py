@@ -6,8 +6,7 @@ import argparse
 import math
 from collections.abc import Callable
 
-MOST = 2**63 - 1
-"""The largest whole number that every file format and random generator here takes."""
+from polyfold.errors._hints import whole_number_problem
 
 
 def whole_number(least: int = 0) -> Callable[[str], int]:
@@ -18,9 +17,8 @@ def whole_number(least: int = 0) -> Callable[[str], int]:
             number = int(text)
         except ValueError:
             number = least - 1
-        if not least <= number <= MOST:
-            most = f" to {MOST}" if number > MOST else ""
-            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least}{most}; give one")
+        if problem := whole_number_problem(number, least, text):
+            raise argparse.ArgumentTypeError(problem)
         return number
 
     return parse

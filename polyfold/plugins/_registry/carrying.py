@@ -9,6 +9,15 @@ SOURCE = "__source_text__"
 """Attribute of a class that was carried: what ``inspect`` finds no more where it has come to."""
 
 
+def portable(target: type | str) -> str | bytes | None:
+    """Where another process finds a class; the class itself, packed, if it is of a notebook, a script or a function."""
+    if isinstance(target, str):
+        return target
+    if target.__module__ == "__main__" or "<locals>" in target.__qualname__:
+        return packed(target)
+    return f"{target.__module__}:{target.__qualname__}"
+
+
 def packed(cls: type) -> bytes | None:
     """The class by value, with what it uses of its notebook or script; None if that can't be."""
     import cloudpickle

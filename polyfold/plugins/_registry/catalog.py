@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shlex
 from collections import defaultdict
 from collections.abc import Callable
@@ -13,11 +12,14 @@ from importlib.metadata import PackageNotFoundError, distribution
 from typing import TYPE_CHECKING, Any
 
 from polyfold.errors import PluginError
+from polyfold.plugins._registry.naming import refuse_name, refuse_target
+from polyfold.plugins.hookspecs import KINDS
 
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
 
-_NAME = re.compile(r"[a-z0-9][a-z0-9+_-]{0,49}")
+SESSION = "<session>"
+"""Stands in the place of a plugin's name for what is registered by hand."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,11 @@ class Plugin:
     def to_disable(self) -> str:
         """What to name in ``$POLYFOLD_DISABLE``: the distribution, since two may have plugins of one name."""
         return self.distribution or self.name
+
+    @property
+    def is_session(self) -> bool:
+        """Whether it stands for what is registered by hand."""
+        return (self.name, self.distribution) == (SESSION, "")
 
     @property
     def label(self) -> str:
@@ -112,14 +119,6 @@ def _without_marker(requirement: Requirement) -> Requirement:
     return plain
 
 
-def refuse_reserved(kind: str, name: str) -> None:
-    """Raises PluginError for the one name that stands for whichever fabric a kind of garment is usually made of."""
-    from polyfold.config import USUAL
-
-    if (kind, name) == ("fabrics", USUAL):
-        raise PluginError(f"the name {name!r} stands for the usual fabric of each kind of garment; choose another")
-
-
 class Catalog:
     """Plugins found and components registered: ``components[kind][name]`` lists who registered the name."""
 
@@ -131,29 +130,38 @@ class Catalog:
         """The ``register`` function that a plugin's hook is called with."""
 
         def register(name: str, target: type | str, summary: str = "", needs: tuple[str, ...] | list[str] = ()) -> None:
-            if not _NAME.fullmatch(name):
-                raise PluginError(
-                    f"the component name {name!r} is not allowed; use lower-case letters, digits, '+', '-' and '_'"
-                )
-            refuse_reserved(kind, name)
+            refuse_name(kind, name)
             if isinstance(target, str) and ":" not in target:
                 raise PluginError(f"the target {target!r} of {name!r} must read 'package.module:Class'")
+            if kind in KINDS:  # a verb may be a module
+                refuse_target(kind, name, target)
             self.add(kind, Component(name, target, summary, tuple(needs), plugin))
 
         return register
 
     def add(self, kind: str, component: Component) -> None:
-        """Add a registration; a name taken by another plugin is recorded against both."""
+        """Add a registration.
+
+        One by hand takes the place of those of its name. Else a name that is taken is recorded against both plugins, or
+        against the one that registers it twice.
+        """
         entries = self.components[kind].setdefault(component.name, [])
-        replaces = not component.plugin.distribution and component.plugin.name == "<session>"
-        if entries and not replaces:
-            for one, other in ((component, entries[0]), (entries[0], component)):
-                one.plugin.problems.append(
-                    Problem(
-                        f"its {kind} name {component.name!r} is also registered by {other.plugin.label}; "
-                        "uninstall or disable one of them"
-                    )
-                )
-        if replaces:
+        if component.plugin.is_session:
             entries.clear()
+        elif entries:
+            owner, other = component.plugin, entries[0].plugin
+            if owner is other:
+                owner.problems.append(Problem(f"it registers the {kind} name {component.name!r} twice; {RENAME}"))
+            else:
+                for one, two in ((owner, other), (other, owner)):
+                    one.problems.append(
+                        Problem(
+                            f"its {kind} name {component.name!r} is also registered by {two.label}; "
+                            "uninstall or disable one of them"
+                        )
+                    )
         entries.append(component)
+
+
+RENAME = "give one of the two another name, or take it out of the hook"
+"""What to do about a name that one plugin registers twice."""

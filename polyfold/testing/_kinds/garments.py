@@ -59,6 +59,13 @@ def _seeded(subject: Subject) -> None:
         off <= OFF * np.ptp(first.mesh.vertices), "generate", f"a finer mesh moves keypoints by {1000 * off:.0f} mm",
         "draw the shape before meshing, so that the edge length changes nothing of it",
     )  # fmt: skip
+    counts = [len(garment.mesh.vertices) for garment in (first, finer)]
+    subject.require(
+        counts[0] < counts[1], "generate",
+        f"it has {counts[0]} vertices at an edge length of {1000 * COARSE:.0f} mm, and {counts[1]} at "
+        f"{700 * COARSE:.0f} mm",
+        "mesh it at about the edge_length that generate is handed",
+    )  # fmt: skip
     subject.require(
         not np.array_equal(first.mesh.vertices, other.mesh.vertices), "generate", "two seeds give the same garment",
         "let sizes depend on the seed: studies fold many garments of a kind",

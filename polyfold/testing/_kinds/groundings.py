@@ -9,10 +9,14 @@ import numpy as np
 
 from polyfold.errors import GroundingError
 from polyfold.plugins._fabrics import garment_template
+from polyfold.prompts import prompt_names
 from polyfold.testing._checks import checks
 from polyfold.testing._materials import OBLONG, SIDE, changed, kept, oblong, picture, scene, scene_of, upward
 from polyfold.testing._subjects import Subject
 from polyfold.types import Scene
+
+NEAR = 12.0
+"""How far off the cloth a place may be said to be [px of 400]."""
 
 
 def _ground(subject: Subject, seen: Scene, *more: Any) -> Scene:
@@ -38,9 +42,52 @@ def _text(subject: Subject) -> None:
         "scene.text names no place, and there is no scene.picture",
         "give vertices: name -> [x, y] [px], or keypoints as a list, or a picture",
     )  # fmt: skip
+
+
+@checks("groundings", "a prompt explains what it shows")
+def _shown(subject: Subject) -> None:
+    shown = _ground(subject, scene("square")).shown
+    if shown == ("polygon",):
+        return
+    begin = "-".join(shown)
+    explained = sorted({found for name in prompt_names() if (found := _explains(name))})
     subject.require(
-        found.shown, "ground", "scene.shown is empty", "it chooses the prompt: say what text and picture hold"
-    )
+        begin in explained, "ground", f"scene.shown is {shown}, and no prompt explains {begin!r} to a language model",
+        f"show one of {', '.join(explained)}, or register a prompt such as fold_line/{begin}-v1.md "
+        "(polyfold.plugins.hookspecs.register_prompts)",
+    )  # fmt: skip
+
+
+def _explains(prompt: str) -> str:
+    """What a scene must show for a prompt, ``keypoints-image`` of ``fold_line@keypoints-image-v2``; else empty."""
+    return prompt.partition("@")[2].rpartition("-")[0]
+
+
+@checks("groundings", "the places that it says are on the cloth")
+def _places(subject: Subject) -> None:
+    seen = scene("pants")  # which turned over its diagonal lies elsewhere, as a square does not
+    try:
+        told = json.loads(_ground(subject, seen).text)
+    except GroundingError:
+        return  # it knows other garments
+    points = _points(told.get("vertices")) | _points(told.get("keypoints"))
+    for name, point in points.items():
+        off = float(np.hypot(*(np.argwhere(seen.mask)[:, ::-1] - point).T).min())
+        subject.require(
+            off <= NEAR, "ground", f"scene.text says that {name} is at {list(point)}, {off:.0f} px off the cloth",
+            "places are [x, y] in pixels of the picture, x to the right, y down",
+        )  # fmt: skip
+
+
+def _points(told: Any) -> dict[str, tuple[float, float]]:
+    """The places in a part of a scene's text, by name or number; what is none is left to others to judge."""
+    named = told.items() if isinstance(told, dict) else enumerate(told) if isinstance(told, list) else ()
+    at = {str(name): place.get("at") if isinstance(place, dict) else place for name, place in named}
+    return {
+        name: (float(place[0]), float(place[1]))
+        for name, place in at.items()
+        if isinstance(place, list) and len(place) == 2 and all(isinstance(value, int | float) for value in place)
+    }
 
 
 @checks("groundings", "the scene is of the picture")

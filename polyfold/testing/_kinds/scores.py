@@ -57,6 +57,17 @@ def _identity(subject: Subject) -> None:
     )
 
 
+@checks("metrics", "a plain fold has a value")
+def _valued(subject: Subject) -> None:
+    metric, wanted = subject.make(), outcome(0.5)
+    values = [metric.score(wanted, [wanted]), metric.score(outcome(0.8), [wanted])]
+    subject.require(
+        any(map(math.isfinite, values)), "score",
+        f"a square folded in half scores {values[0]:g} against itself, one folded elsewhere {values[1]:g}",
+        "NaN is for what can't be measured, as without a reference; a plain fold can be",
+    )  # fmt: skip
+
+
 @checks("metrics", "of several references the nearest counts")
 def _nearest(subject: Subject) -> None:
     metric, result = subject.make(), outcome(0.5)
