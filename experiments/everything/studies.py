@@ -153,6 +153,11 @@ def _policies(results: Results) -> Sequence[Section]:
     ]
 
 
+def _policies_oracle(results: Results) -> Sequence[Section]:
+    others = [name for name in results.study.variants if name != "affordance-pair"]
+    return [*_table(results), *_pairs(*(("affordance-pair", other) for other in others))(results)]
+
+
 def _within_reach(results: Results, default: str) -> str:
     """How much better than a variant the best pick of all variants could be: as good as any, chosen after the fact."""
     heads = ("kind", "n", "strict %", "strict % of the best variant, each time", "missed by every variant")
@@ -176,6 +181,7 @@ STUDIES = (
     StudyStep("noise_floor", 0.1, lambda results: [("", polyfold.table(results, noise=results).markdown())]),
     StudyStep("recovery", 0.4, _recovery),
     StudyStep("policies", 1.0, _policies, garments=7),
+    StudyStep("policies_oracle", 0.4, _policies_oracle),
     StudyStep("displaced", 0.2, _displaced),
     StudyStep("robustness", 1.0, _robustness),
     StudyStep("robot_cell", 0.5, _robot_cell),
