@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from polyfold import plugins
-from polyfold.errors import PluginError, did_you_mean
+from polyfold.errors import ConfigError, PluginError, did_you_mean
 from polyfold.plugins._registry.catalog import Catalog, Plugin
-from polyfold.plugins._traits import Configurable
+from polyfold.plugins._traits import Configurable, ReadsFiles
 from polyfold.plugins.hookspecs import KINDS, singular
 
 
@@ -48,7 +48,20 @@ class Subject:
             return None
         required = [name for name, field in cls.Config.model_fields.items() if field.is_required()]
         missing = [name for name in required if name not in self.params]
-        return f"needs params={{'{self}': {{{', '.join(f'{name!r}: …' for name in missing)}}}}}" if missing else None
+        if missing:
+            return f"needs params={{'{self}': {{{', '.join(f'{name!r}: …' for name in missing)}}}}}"
+        return self._lacking_files(cls)
+
+    def _lacking_files(self, cls: Any) -> str | None:
+        """Which files it says that it lacks, such as weights that everybody makes for themselves."""
+        if not isinstance(cls, ReadsFiles):
+            return None
+        config = plugins.configured(self.kind, self.name, self.params)[1]
+        try:
+            cls.files_read(config)
+        except ConfigError as error:
+            return str(error)
+        return None
 
     def make(self) -> Any:
         """A new one, as the host makes it."""

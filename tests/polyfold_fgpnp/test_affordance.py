@@ -128,7 +128,6 @@ def test_region_keeps_both_of_two_legs():
     [
         (FoldLine((310, 350), (310, 50)), "misses the cloth"),
         (FoldLine((297, 50), (297, 350)), "swap its start and end"),
-        (FoldLine((100, 100), (100, 100)), "two distinct points"),
     ],
 )
 def test_nothing_to_fold_is_an_error_that_says_what_to_do(line, message):

@@ -52,8 +52,6 @@ def fold_region(fold_line: FoldLine, scene: Scene) -> FoldRegion:
     Raises:
         PlanError: if the line misses the cloth, or no cloth worth grasping lies left of it.
     """
-    if not fold_line.length > 0:
-        raise PlanError("the fold line's start and end coincide; give two distinct points")
     cloth = _largest_blob(scene.mask)
     if span_on_mask(cloth, fold_line.start, fold_line.end) is None:
         raise PlanError("the fold line misses the cloth, so nothing can be folded; move the line onto the cloth")
