@@ -180,7 +180,7 @@ STUDIES = (
     StudyStep("main", 1.2, _main, also=(("final_goal.md", _several_folds),), pictured=True),
     StudyStep("noise_floor", 0.1, lambda results: [("", polyfold.table(results, noise=results).markdown())]),
     StudyStep("recovery", 0.4, _recovery),
-    StudyStep("policies", 1.0, _policies, garments=7),
+    StudyStep("policies", 2.6, _policies, garments=9),
     StudyStep("policies_oracle", 0.4, _policies_oracle),
     StudyStep("displaced", 0.2, _displaced),
     StudyStep("robustness", 1.0, _robustness),
