@@ -143,19 +143,20 @@ def _disturbances(results: Results) -> Sequence[Section]:
     return [*_table(results), *_pairs(*(pair for pair in pairs if pair[0] != pair[1]))(results)]
 
 
+DEFAULT = "affordance-pair"
+"""The policy that the others are compared with."""
+
+
 def _policies(results: Results) -> Sequence[Section]:
-    default = "affordance-pair"
-    others = [name for name in results.study.variants if name != default]
-    return [
-        *_table(results),
-        ("What picks decide:", _within_reach(results, default)),
-        *_pairs(*((default, other) for other in others))(results),
-    ]
+    return [*_table(results), ("What picks decide:", _within_reach(results, DEFAULT)), *_beside_the_default(results)]
 
 
 def _policies_oracle(results: Results) -> Sequence[Section]:
-    others = [name for name in results.study.variants if name != "affordance-pair"]
-    return [*_table(results), *_pairs(*(("affordance-pair", other) for other in others))(results)]
+    return [*_table(results), *_beside_the_default(results)]
+
+
+def _beside_the_default(results: Results) -> Sequence[Section]:
+    return _pairs(*((DEFAULT, name) for name in results.study.variants if name != DEFAULT))(results)
 
 
 def _within_reach(results: Results, default: str) -> str:

@@ -34,7 +34,9 @@ def is_english(sentence: str, known: Collection[str]) -> bool:
     familiar = sum(word in known for word in words if len(word) >= SHORT)
     little = sum(word in LITTLE_WORDS for word in words)
     telling = sum(len(word) >= TELLING for word in words)
-    return familiar > (little if little > 1 else 0) or (telling < 2 and not little)
+    if little > 1:
+        return familiar > little
+    return familiar > 0 or (telling < 2 and little == 0)
 
 
 def _is_latin(word: str) -> bool:
