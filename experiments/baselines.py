@@ -51,6 +51,7 @@ STEPS = (
     _fit("foldsformer-2arm", 45, "demos-2arm", 60_000),
     _fit("langdef", 30, "demos-1arm", 80_000, "--width", "192"),
     _fit("langdef-2arm", 30, "demos-2arm", 80_000, "--width", "192"),
+    _fit("metafold-like", 30, "demos-2arm", 80_000, "--width", "192"),
     Step("ppo", 80, ("fit", "ppo", "--passes", "12000"), ("--passes", "240000", "--device", "cuda")),
 )
 """In the order in which they are run."""

@@ -75,7 +75,7 @@ def test_a_folder_is_gone_on_with_and_says_by_a_hash_what_it_holds(demonstrated,
     ("arguments", "says"),
     [
         (["--tasks", "square-corner-nowhere"], "no task .*square-corner-nowhere.* did you mean"),
-        (["--tasks", "square-corner-top_left"], "is unseen"),
+        (["--tasks", "square-corner-top_left"], "no seen task.*--split unseen"),
         (["--edge-length", "9"], "edge_length"),
     ],
 )
@@ -83,6 +83,15 @@ def test_what_can_not_be_demonstrated_is_said(tmp_path, capsys, arguments, says)
     assert main(["demos", "--out", str(tmp_path / "out"), *arguments]) == 1
     assert re.search(says, capsys.readouterr().err)
     assert not (tmp_path / "out").exists()
+
+
+def test_tasks_are_chosen_by_patterns_as_elsewhere():
+    plan = PLAN.model_copy(update={"tasks": ("square-corner-*", "pants-*"), "seeds": (1000, 1000)})
+    named = [task.id for task, _ in plan.jobs()]
+    assert {name.partition("-")[0] for name in named} == {"square", "pants"}
+    assert all(task.split == "seen" for task, _ in plan.jobs())
+    assert any(name.startswith("square-corner-") for name in named)
+    assert len(named) == len(set(named))
 
 
 def test_demonstrations_show_themselves(demonstrated):

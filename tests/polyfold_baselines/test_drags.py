@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 from demo_plan import PLAN
-from polyfold_baselines.agents.ltf import LearningToFold
+from polyfold_baselines.agents.imitating.ltf import LearningToFold
 from polyfold_baselines.demos.cloths import CLOTH
 from polyfold_baselines.demos.command import collect
 from polyfold_baselines.demos.demonstrating import unpacked

@@ -7,7 +7,7 @@ import pytest
 import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from polyfold_baselines.agents.foldsformer import Foldsformer, Foldsformer2Arm
+from polyfold_baselines.agents.imitating.foldsformer import Foldsformer, Foldsformer2Arm
 from polyfold_baselines.demos.window import SIDE
 from polyfold_baselines.learning import fitting, learner
 from polyfold_baselines.learning.fitting import FitConfig, fit
@@ -139,11 +139,11 @@ def test_weights_that_were_changed_or_are_another_rows_are_refused(overfitted, t
 
 
 def test_a_row_takes_its_own_weights_from_the_package_and_says_where_there_are_none(overfitted, tmp_path, monkeypatch):
-    from polyfold_baselines.agents import imitation
+    from polyfold_baselines.agents.imitating import imitation
 
     segmenter = plugins.create("segmenters", "colour")
     package = tmp_path / "package"
-    monkeypatch.setattr(imitation, "__file__", str(package / "agents" / "imitation.py"))
+    monkeypatch.setattr(imitation, "__file__", str(package / "agents" / "imitating" / "imitation.py"))
     with pytest.raises(ConfigError, match="come with the package; make them with 'polyfold fit foldsformer-2arm'"):
         plugins.create("agents", "foldsformer-2arm", {}, segmenter=segmenter)
     (package / "weights").mkdir(parents=True)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import torch
-from polyfold_baselines.agents.bifold import BiFold
 from polyfold_baselines.agents.goals import InTurn
-from polyfold_baselines.agents.langdef import LangDef2Arm
+from polyfold_baselines.agents.imitating.bifold import BiFold
+from polyfold_baselines.agents.imitating.langdef import LangDef2Arm
 from polyfold_baselines.learning.fitting import FitConfig, fit
 from polyfold_baselines.learning.weights import load
 

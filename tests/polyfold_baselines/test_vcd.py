@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 import torch
-from polyfold_baselines.agents.shooting import best_drag, chamfer
-from polyfold_baselines.agents.vcd import Vcd
+from polyfold_baselines.agents.searching.shooting import best_drag, chamfer
+from polyfold_baselines.agents.searching.vcd import Vcd
 from polyfold_baselines.demos.store import Demos
 from polyfold_baselines.demos.window import SIDE, in_view, on_table
 from polyfold_baselines.learning import learner

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from polyfold_baselines.agents.planning import Copy
-from polyfold_baselines.agents.wang import Wang
+from polyfold_baselines.agents.searching.planning import Copy
+from polyfold_baselines.agents.searching.wang import Wang
 
 import polyfold
 from polyfold import plugins

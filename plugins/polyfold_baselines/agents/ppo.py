@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 from polyfold.plugins.interfaces import Goal, Segmenter
 from polyfold.types import Decision, Observation, Subgoal
 from polyfold_baselines.agents.goals import InTurn
-from polyfold_baselines.agents.imitation import ImitationConfig, read_weights, weights_file
+from polyfold_baselines.agents.imitating.imitation import ImitationConfig, read_weights, weights_file
 from polyfold_baselines.demos.window import Window
 
 

@@ -27,7 +27,7 @@ class Demos:
             "(default: fold-lines)",
         )  # fmt: skip
         parser.add_argument("--split", choices=("seen", "unseen"), default="seen", help="of the tasks (default: seen)")
-        parser.add_argument("--tasks", nargs="+", default=(), metavar="ID", help="only these tasks")
+        parser.add_argument("--tasks", nargs="+", default=(), metavar="ID", help="only these, ids or patterns")
         parser.add_argument("--garments", type="count", default=20, metavar="N", help="for each task (default: 20)")
         parser.add_argument("--first-seed", type="seed", default=1000, metavar="N", help="of them (default: 1000)")
         parser.add_argument("--edge-length", type="metres", default=0.018, metavar="M", help="default: 0.018")

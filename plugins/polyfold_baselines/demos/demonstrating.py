@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from polyfold import plugins
 from polyfold.config import ComponentSpec, Experiment
-from polyfold.errors import ConfigError, did_you_mean
+from polyfold.errors import ConfigError
 from polyfold.evaluation import suite
 from polyfold.plugins.interfaces import Agent, Goal
 from polyfold.rollout import run_episode
@@ -43,7 +43,7 @@ class DemoPlan(BaseModel):
 
     suite: str = Field(default="polyfold70", description="task suite")
     split: Literal["seen", "unseen"] = Field(default="seen", description="which of its tasks")
-    tasks: tuple[str, ...] = Field(default=(), description="only these tasks, by id")
+    tasks: tuple[str, ...] = Field(default=(), description="only these tasks, by id or pattern")
     arms: Literal[1, 2] = Field(default=2, description="with how many arms")
     agent: Literal["fold-lines", "oracle", "random-drags"] = Field(default="fold-lines", description="who folds")
     seeds: tuple[int, int] = Field(default=(1000, 1019), description="first and last garment seed, for each task")
@@ -54,21 +54,18 @@ class DemoPlan(BaseModel):
         """Raise ConfigError if a task that is chosen is not there, or is of the other half, or arms are too many."""
         if self.agent == "random-drags" and self.arms != 1:
             raise ConfigError("random drags are made with one arm; add --arms 1")
-        splits = {entry.id: entry.split for entry in suite(self.suite).entries if isinstance(entry, Task)}
-        for name in self.tasks:
-            if name not in splits:
-                raise ConfigError(f"no task of {self.suite} is called {name!r}; {did_you_mean(name, splits)}")
-            if splits[name] != self.split:
-                raise ConfigError(
-                    f"the task {name!r} is {splits[name]}, not {self.split}; choose others, or that split"
-                )
+        for pattern in self.tasks:
+            named = [task for task in suite(self.suite).matching([pattern]) if isinstance(task, Task)]
+            if not any(task.split == self.split for task in named):
+                other = "unseen" if self.split == "seen" else "seen"
+                raise ConfigError(f"{pattern!r} names no {self.split} task; choose other tasks, or --split {other}")
 
     def jobs(self) -> list[tuple[Task, int]]:
         """The tasks and garment seeds, one demonstration each, in an order in which a part of them is balanced."""
         chosen = [
             entry
-            for entry in suite(self.suite).entries
-            if isinstance(entry, Task) and entry.split == self.split and (not self.tasks or entry.id in self.tasks)
+            for entry in suite(self.suite).matching(self.tasks or ("*",))
+            if isinstance(entry, Task) and entry.split == self.split
         ]
         return [(task, seed) for seed in range(self.seeds[0], self.seeds[1] + 1) for task in chosen]
 

@@ -12,15 +12,16 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
 ROWS = {
-    "foldsformer": "polyfold_baselines.agents.foldsformer:Foldsformer",
-    "foldsformer-2arm": "polyfold_baselines.agents.foldsformer:Foldsformer2Arm",
-    "bifold": "polyfold_baselines.agents.bifold:BiFold",
-    "ltf": "polyfold_baselines.agents.ltf:LearningToFold",
-    "langdef": "polyfold_baselines.agents.langdef:LangDef",
-    "langdef-2arm": "polyfold_baselines.agents.langdef:LangDef2Arm",
+    "foldsformer": "polyfold_baselines.agents.imitating.foldsformer:Foldsformer",
+    "foldsformer-2arm": "polyfold_baselines.agents.imitating.foldsformer:Foldsformer2Arm",
+    "bifold": "polyfold_baselines.agents.imitating.bifold:BiFold",
+    "ltf": "polyfold_baselines.agents.imitating.ltf:LearningToFold",
+    "langdef": "polyfold_baselines.agents.imitating.langdef:LangDef",
+    "langdef-2arm": "polyfold_baselines.agents.imitating.langdef:LangDef2Arm",
+    "metafold-like": "polyfold_baselines.agents.imitating.metafold:MetaFoldLike",
 }
-"""Baselines that learn heatmaps or values from demonstrations or drags."""
-BY_DRAGGING = {"vcd": "polyfold_baselines.agents.vcd:Vcd"}
+"""Baselines that learn heatmaps, flows or values from demonstrations or drags."""
+BY_DRAGGING = {"vcd": "polyfold_baselines.agents.searching.vcd:Vcd"}
 """Baselines that learn from random drags what cloth does."""
 BY_TRYING = {"ppo": "polyfold_baselines.agents.ppo:Ppo"}
 """Baselines that learn by trying folds."""

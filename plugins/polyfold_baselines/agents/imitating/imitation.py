@@ -146,7 +146,7 @@ def weights_file(cls: type[Learned], config: ImitationConfig) -> Path:
     """The file that is named, else the row's own that comes with the package. Raises ConfigError if none does."""
     if config.weights is not None:
         return config.weights
-    shipped = Path(__file__).parents[1] / "weights" / f"{cls.row}.safetensors"
+    shipped = Path(__file__).parents[2] / "weights" / f"{cls.row}.safetensors"
     if not shipped.is_file():
         raise ConfigError(
             f"no weights of {cls.row} come with the package; make them with 'polyfold fit {cls.row}', and name their "

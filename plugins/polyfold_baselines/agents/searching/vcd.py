@@ -27,8 +27,8 @@ from pydantic import Field
 from polyfold.plugins.interfaces import Goal, Segmenter
 from polyfold.types import Action, Decision, Observation, Subgoal
 from polyfold_baselines.agents.goals import GoalPictures
-from polyfold_baselines.agents.imitation import ImitationConfig, read_weights, weights_file
-from polyfold_baselines.agents.shooting import best_drag
+from polyfold_baselines.agents.imitating.imitation import ImitationConfig, read_weights, weights_file
+from polyfold_baselines.agents.searching.shooting import best_drag
 from polyfold_baselines.demos.window import in_view, on_cloth, on_table
 from polyfold_baselines.learning.dynamics.graphs import nodes_of
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from polyfold_baselines.agents.imitation import PictureImitation
+from polyfold_baselines.agents.imitating.imitation import PictureImitation
 
 if TYPE_CHECKING:
     from polyfold_baselines.learning.networks.network import Network

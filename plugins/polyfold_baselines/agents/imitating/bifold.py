@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from polyfold_baselines.agents.imitation import SentenceImitation
+from polyfold_baselines.agents.imitating.imitation import SentenceImitation
 
 if TYPE_CHECKING:
     from polyfold_baselines.learning.networks.network import Network

@@ -25,7 +25,7 @@ from polyfold.config import ComponentSpec
 from polyfold.plugins.interfaces import Goal
 from polyfold.types import Action, Decision, Observation, SimState, Subgoal
 from polyfold_baselines.agents.goals import InTurn
-from polyfold_baselines.agents.planning import Copy, pixels
+from polyfold_baselines.agents.searching.planning import Copy, pixels
 
 Floats = NDArray[np.float64]
 

@@ -1,0 +1,1 @@
+"""Agents that fold as demonstrations or random drags taught their networks."""
