@@ -3,6 +3,7 @@
 import itertools
 import json
 from fnmatch import fnmatch
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,7 +28,9 @@ def training(folder, seed, folds=None, data_folds=10000, snapshots=(2, 4)):
     """A folder as `polyfold train` leaves it; the weights are empty files."""
     data = folder.parent / "data"
     data.mkdir(exist_ok=True, parents=True)
-    (data / "dataset.json").write_text(json.dumps({"counts": {"folds": data_folds}}))
+    (data / "dataset.json").write_text(
+        json.dumps({"schema_version": 2, "parameters": {}, "counts": {"folds": data_folds}})
+    )
     folder.mkdir()
     config = {"data": [str(data)], "network": {"variant": "csam"}, "folds": folds, "seed": seed, "epochs": EPOCHS}
     (folder / "training.json").write_text(json.dumps({"config": config}))
@@ -136,11 +139,26 @@ def test_two_trainings_that_can_t_be_told_apart_are_refused(tmp_path, capsys):
 def test_the_folds_of_a_training_are_those_it_used(tmp_path):
     assert read_run(training(tmp_path / "a", 0, folds=2500)).folds == 2500
     assert read_run(training(tmp_path / "b", 0, folds=20000)).folds == 10000
-    (tmp_path / "data" / "dataset.json").unlink()
-    with pytest.raises(ConfigError, match="where the training was run"):
-        read_run(tmp_path / "a")
     with pytest.raises(ConfigError, match="holds no training"):
         read_run(tmp_path / "data")
+    (tmp_path / "data").rename(tmp_path / "elsewhere")
+    with pytest.raises(ConfigError, match="where the training was run"):
+        read_run(tmp_path / "a")
+
+
+def test_the_folds_of_a_training_on_a_packed_data_set_are_told_too(tmp_path):
+    published = Path(__file__).parents[2] / "experiments" / "data" / "folds-1sam-0.zip"
+    run = training(tmp_path / "a", 0)
+    note = json.loads((run / "training.json").read_text())
+    note["config"]["data"] = [str(published)]
+    (run / "training.json").write_text(json.dumps(note))
+    assert read_run(run).folds == 2292
+    published = tmp_path / "none.zip"
+    published.write_bytes(b"no archive")
+    note["config"]["data"] = [str(published)]
+    (run / "training.json").write_text(json.dumps(note))
+    with pytest.raises(ConfigError, match="damaged"):
+        read_run(run)
 
 
 def test_names_of_variants_are_read_back():

@@ -36,7 +36,7 @@ from polyfold.errors import ConfigError
 from polyfold.geometry import FoldLine, contour_of
 from polyfold.types import Scene
 from polyfold_fgpnp.data.outcomes import contour_reward, particle_reward
-from polyfold_fgpnp.data.packing import read_packed, write_packed
+from polyfold_fgpnp.data.packing import read_packed, read_packed_description, write_packed
 from polyfold_fgpnp.data.trials import RECIPES
 
 SCHEMA = 2
@@ -219,6 +219,19 @@ def load_dataset(path: str | Path) -> Dataset:
         offset += len(shard["mask"])
         shards.append(shard)
     return Dataset(description, {name: np.concatenate([shard[name] for shard in shards]) for name in shards[0]})
+
+
+def describe_dataset(path: str | Path) -> Description:
+    """What a data set says of itself, its counts among it, without reading what it holds.
+
+    Args:
+        path: a folder or one file.
+
+    Raises:
+        ConfigError: if there is none, or it is of an unknown schema.
+    """
+    path = Path(path)
+    return _of_this_schema(read_packed_description(path), path) if path.is_file() else _read_description(path)
 
 
 def pack_dataset(path: str | Path, file: str | Path) -> int:

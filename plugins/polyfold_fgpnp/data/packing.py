@@ -26,6 +26,8 @@ Columns = dict[str, NDArray[Any]]
 _DESCRIPTION = "description.json"
 _DATE = (1980, 1, 1, 0, 0, 0)
 """Of every member, so that the same data make the same file."""
+_DAMAGES = (OSError, ValueError, KeyError, TypeError, IndexError, EOFError, zipfile.BadZipFile, lzma.LZMAError)
+"""What reading a file that is damaged, or something else, raises."""
 
 
 def write_packed(
@@ -72,20 +74,24 @@ def read_packed(path: str | Path) -> tuple[dict[str, Any], Columns]:
         columns = _with_repeats(stored)
         if _digest(columns) != digest:
             raise ValueError("its numbers are not those that were written")
-    except (
-        OSError,
-        ValueError,
-        KeyError,
-        TypeError,
-        IndexError,
-        EOFError,
-        zipfile.BadZipFile,
-        lzma.LZMAError,
-    ) as error:
-        raise ConfigError(
-            f"{path} is no data set of `polyfold collect --pack`, or damaged ({error}); fetch it again, or collect anew"
-        ) from error
+    except _DAMAGES as error:
+        raise _damaged(path, error) from error
     return description, columns
+
+
+def read_packed_description(path: str | Path) -> dict[str, Any]:
+    """The description alone. Raises ConfigError if it is no such file."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return dict(json.loads(archive.read(_DESCRIPTION)))
+    except _DAMAGES as error:
+        raise _damaged(path, error) from error
+
+
+def _damaged(path: str | Path, error: Exception) -> ConfigError:
+    return ConfigError(
+        f"{path} is no data set of `polyfold collect --pack`, or damaged ({error}); fetch it again, or collect anew"
+    )
 
 
 def _member(name: str) -> zipfile.ZipInfo:

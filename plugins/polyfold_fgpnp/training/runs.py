@@ -10,6 +10,7 @@ from typing import Any
 
 from polyfold.errors import ConfigError
 from polyfold.logs import JsonLines
+from polyfold_fgpnp.data.dataset import describe_dataset
 
 METRICS = "metrics.jsonl"
 """File of the metrics by epoch, in the folder of a training."""
@@ -63,8 +64,7 @@ def read_run(path: str | Path) -> TrainingRun:
 
 def _folds(data: str, most: int | None) -> int:
     """Folds that a training with this limit uses of a data set."""
-    description = Path(data) / "dataset.json"
-    if not description.exists():
+    if not Path(data).exists():
         raise ConfigError(f"the data set {data} of a training is not there; run this where the training was run")
-    there = json.loads(description.read_text("utf-8"))["counts"]["folds"]
+    there = describe_dataset(data)["counts"]["folds"]
     return there if most is None else min(there, most)
