@@ -64,7 +64,7 @@ class Fit:
 def _fitted(arguments: argparse.Namespace) -> Path:
     settings = {"row": arguments.row, "demos": str(arguments.demos)}
     settings |= _chosen(arguments, "passes", "width", "depth", "seed")
-    row = _class({**ROWS, **BY_DRAGGING}[arguments.row])
+    row = row_class(arguments.row)
     if arguments.row in BY_DRAGGING:
         from polyfold_baselines.learning.dynamics.training import DynamicsConfig, fit_dynamics
 
@@ -74,10 +74,11 @@ def _fitted(arguments: argparse.Namespace) -> Path:
     return fit(_valid(FitConfig, **settings), row, arguments.out, arguments.device)
 
 
-def _class(target: str) -> Any:
+def row_class(row: str) -> Any:
+    """The agent's class of a baseline that is trained."""
     from importlib import import_module
 
-    module, _, name = target.partition(":")
+    module, _, name = {**ROWS, **BY_DRAGGING, **BY_TRYING}[row].partition(":")
     return getattr(import_module(module), name)
 
 
